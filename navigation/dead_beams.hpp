@@ -18,6 +18,8 @@ class DeadBeams {
   /// After that, where the scan is localized: which of its beams should have seen a wall. Looks where the robot has
   /// moved or turned a little since it last did.
   void hold_against_map(const TrackedScan& tracked);
+  /// A person said drive.
+  void begin_anew() { missed_.clear(); }
   /// So many beams that something as wide as a sixth of the fan is not seen.
   [[nodiscard]] bool hide_a_sector() const;
 

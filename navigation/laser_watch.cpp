@@ -55,6 +55,7 @@ void CoveredSector::observe(const Scan& scan) {
   if (static_cast<double>(lost_count) >= kCoveredShare * static_cast<double>(count)) {
     for (std::size_t i = 0; i < count; ++i) covered_[i] = covered_[i] || lost[i];
     if (!since_) since_ = scan.time;
+    broke_off_at_ = scan.time;
   } else if (since_ && static_cast<double>(still) < kUncoveredShare * static_cast<double>(count)) {
     covered_.assign(count, false);
     since_.reset();
@@ -62,6 +63,11 @@ void CoveredSector::observe(const Scan& scan) {
   last_.resize(count);
   std::transform(scan.beams.begin(), scan.beams.end(), last_.begin(), [](const Beam& beam) { return beam.kind; });
   last_at_ = scan.time;
+}
+
+void CoveredSector::forget() {
+  covered_.assign(covered_.size(), false);
+  since_.reset();
 }
 
 Scan CoveredSector::without(Scan scan) const {
@@ -76,10 +82,13 @@ Scan CoveredSector::without(Scan scan) const {
 
 void LaserWatch::observe(const Scan& scan) {
   newest_ = scan.time;
-  sector_.observe(scan);
-  watch_emptiness(scan);
   const auto odom_from_robot = wheels_.odom_from_robot(scan.time);
   watch_repetition(scan, odom_from_robot);
+  if (repeats_ || scan.implausible)
+    sector_.skip();
+  else
+    sector_.observe(scan);
+  watch_emptiness(scan);
   if (odom_from_robot && !repeats_)
     (void)motion_.observe(scan, *odom_from_robot, wheels_.epoch());
   else
@@ -95,9 +104,22 @@ void LaserWatch::watch_emptiness(const Scan& scan) {
 }
 
 bool LaserWatch::sees_nothing() const {
-  if (const auto since = sector_.since(); since && seconds(newest_ - *since) >= kBlindS) return true;
-  const bool is_excused = excused_at_ && seconds(newest_ - *excused_at_) < kExcuseLifeS;
-  return empty_since_ && !is_excused && seconds(newest_ - *empty_since_) >= kBlindS;
+  const auto lasts = [&](const std::optional<Timestamp>& since) {
+    return since && seconds(newest_ - *since) >= kBlindS;
+  };
+  return (lasts(sector_.since()) && !excuses_sector()) || (lasts(empty_since_) && !is_excused());
+}
+
+bool LaserWatch::is_excused() const { return excused_at_ && seconds(newest_ - *excused_at_) < kExcuseLifeS; }
+
+/// Not where all ranges broke off: the world does not vanish so. Nor by what was said before they did.
+bool LaserWatch::excuses_sector() const {
+  return is_excused() && !empty_since_ && *excused_at_ >= sector_.broke_off_at();
+}
+
+void LaserWatch::begin_anew() {
+  motion_.forget_contradiction();
+  sector_.forget();
 }
 
 void LaserWatch::watch_repetition(const Scan& scan, const std::optional<Pose2>& odom_from_robot) {

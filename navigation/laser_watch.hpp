@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the laser can be believed: what it has ceased to see, whether it repeats itself, and whether its scans follow
 // the wheels. Looks at scans and odometry alone, so that no pose and no map is needed; a map may only excuse a laser
-// that sees nothing.
+// that sees nothing, or nothing in a sector.
 #pragma once
 
 #include <optional>
@@ -16,12 +16,18 @@ namespace deltamap::navigation {
 /// So few ranges that there are none.
 [[nodiscard]] bool brings_nothing(const Scan& scan);
 
-/// A sector in which ranges broke off all at once is taken for covered until ranges come from it again.
+/// A sector in which ranges broke off all at once is taken for covered until ranges come from it again, or a person has
+/// said drive.
 class CoveredSector {
  public:
   void observe(const Scan& scan);
+  /// This scan tells nothing: the next one is not held against it.
+  void skip() { last_.clear(); }
+  void forget();
   [[nodiscard]] bool is_there() const { return since_.has_value(); }
   [[nodiscard]] std::optional<Timestamp> since() const { return since_; }
+  /// When ranges last broke off.
+  [[nodiscard]] Timestamp broke_off_at() const { return broke_off_at_; }
   /// The scan with these beams as not valid: what they do not see is not free.
   [[nodiscard]] Scan without(Scan scan) const;
 
@@ -30,17 +36,19 @@ class CoveredSector {
   Timestamp last_at_{};
   std::vector<bool> covered_;  // a beam each
   std::optional<Timestamp> since_;
+  Timestamp broke_off_at_{};
 };
 
 class LaserWatch {
  public:
   void observe(const Odometry& odometry) { wheels_.observe(odometry); }
   void observe(const Scan& scan);
-  /// Whoever knows map and pose: from here nothing lies within the laser's reach. Counts for a moment.
-  void excuse(Timestamp now) { excused_at_ = now; }
+  /// Whoever knows map and pose: of the scan of that time the beams without a range had nothing within reach. Counts
+  /// for a moment; nothing withdraws it.
+  void excuse(std::optional<Timestamp> scan_time) { excused_at_ = scan_time; }
   [[nodiscard]] const WheelPath& wheels() const { return wheels_; }
-  /// A person said drive.
-  void forget_contradiction() { motion_.forget_contradiction(); }
+  /// A person said drive: what contradicted the wheels, and a sector that lost its ranges, is held against it no more.
+  void begin_anew();
 
   /// No range for a second, or none from a sector that had some.
   [[nodiscard]] bool sees_nothing() const;
@@ -49,7 +57,7 @@ class LaserWatch {
   /// Whether the scans follow the wheels, and have shown that the laser looks where its mount says.
   [[nodiscard]] const MotionWatch& motion() const { return motion_; }
   /// The scan, and what it leaves open: beams of a covered sector as not valid.
-  [[nodiscard]] Scan believed(const Scan& scan) const { return sector_.without(scan); }
+  [[nodiscard]] Scan believed(const Scan& scan) const { return excuses_sector() ? scan : sector_.without(scan); }
 
  private:
   struct Seen {
@@ -57,6 +65,8 @@ class LaserWatch {
     Pose2 odom_from_robot;
     std::uint32_t epoch;
   };
+  [[nodiscard]] bool is_excused() const;
+  [[nodiscard]] bool excuses_sector() const;
   void watch_emptiness(const Scan& scan);
   void watch_repetition(const Scan& scan, const std::optional<Pose2>& odom_from_robot);
 

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "navigation/mapped_walls.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "core/grid/grid_ray.hpp"
+#include "navigation/laser_watch.hpp"
 
 namespace deltamap::navigation {
 namespace {
 
 constexpr double kStepRad = radians(2.0);  // at 3 m a tenth of a metre apart
 constexpr double kReachShare = 0.9;        // of the laser's range: what lies beyond may be missed
+constexpr double kOpenShare = 1.0 / 12.0;  // of the fan may miss walls: a sector that has so few left is open again
 constexpr double kKnownShare = 0.5;        // of a ray's length on known floor: the map knows that direction
 
 struct Met {
@@ -76,15 +79,20 @@ std::vector<Point2> walls_behind_lost_beams(const TrackedScan& tracked, double w
 bool expects_no_range(const TrackedScan& tracked) {
   if (!is_tracked(tracked)) return false;
   const Scan& scan = tracked.scan;
-  int rays = 0;
+  int looks = 0;
+  int lost = 0;
   int known = 0;
+  int missed = 0;
   for (std::size_t i = 0; i < scan.beams.size(); i += 2 * beams_between(scan)) {
+    ++looks;
+    if (scan.beams[i].kind == BeamKind::kRange) continue;
     const Met met = met_by(tracked, i, kReachShare * scan.max_range_m);
-    if (met.wall_m) return false;
-    ++rays;
+    ++lost;
+    missed += met.wall_m ? 1 : 0;
     known += met.known_share >= kKnownShare ? 1 : 0;
   }
-  return 2 * known >= rays;
+  const double most_missed = brings_nothing(scan) ? 0.0 : kOpenShare * looks;
+  return missed <= most_missed && 2 * known >= lost;
 }
 
 }  // namespace deltamap::navigation

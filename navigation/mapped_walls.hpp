@@ -20,8 +20,8 @@ namespace deltamap::navigation {
 /// Scan::time; none while the pose is not tracked.
 [[nodiscard]] std::vector<Point2> walls_behind_lost_beams(const TrackedScan& tracked, double within_m);
 
-/// At this pose the map knows the floor around, and nothing on it that the laser could reach: a scan without a range is
-/// what it should be. False where the map does not know, or the pose is not tracked.
+/// In the directions of the beams without a range the map knows the floor, and nothing on it that the laser could
+/// reach: they are what they should be. False where the map does not know, or the pose is not tracked.
 [[nodiscard]] bool expects_no_range(const TrackedScan& tracked);
 
 }  // namespace deltamap::navigation

@@ -85,8 +85,12 @@ void Safety::command(const DriveCommand& command, Timestamp now, StopReason held
 }
 
 void Safety::let_drive_again() {
-  laser_.forget_contradiction();
   wheels_spin_ = false;
+  ++times_let_drive_;
+  const bool was_blind = misses_walls_ || laser_.sees_nothing();
+  misses_walls_ = false;
+  laser_.begin_anew();
+  has_forgotten_blindness_ = was_blind && !laser_.sees_nothing();
   latches_[kWheelsSpin].observe(false);
   for (StopLatch& latch : latches_) latch.release();
 }

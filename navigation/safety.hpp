@@ -80,8 +80,8 @@ class Safety {
   void release() { command_.reset(); }
   /// What was sent to the robot just now: it is held to that. Nothing: nobody talks to it.
   void told(const std::optional<Motion>& motion, Timestamp now);
-  /// Where the map says that the laser should see nothing, it may. Counts for a moment.
-  void expect_no_range(Timestamp now) { laser_.excuse(now); }
+  /// Where the map says that the laser should see nothing, it may: as LaserWatch::excuse().
+  void expect_no_range(std::optional<Timestamp> scan_time) { laser_.excuse(scan_time); }
   /// By the localizer: the wheels turn and the scans stand.
   void set_wheels_spin(bool wheels_spin) { wheels_spin_ = wheels_spin; }
   /// Whoever knows map and pose: a part of the laser never sees what the map has.
@@ -89,8 +89,11 @@ class Safety {
   /// The robot's session does not know what hull and units this robot has.
   void set_unknown_robot(bool is_unknown) { is_unknown_robot_ = is_unknown; }
   /// A person said drive (`deltamap ctl drive wander`; Safety sees the MOTORS button itself): stops whose cause is gone
-  /// end.
+  /// end, and what the laser has ceased to see is held against it no more.
   void let_drive_again();
+  [[nodiscard]] std::uint32_t times_let_drive() const { return times_let_drive_; }
+  /// The last time, the laser had ceased to see something.
+  [[nodiscard]] bool has_forgotten_blindness() const { return has_forgotten_blindness_; }
   /// What a person has yet to answer; kNone where nothing.
   [[nodiscard]] StopReason waits_for() const;
   /// It has to: until the scans have shown that the laser looks ahead.
@@ -159,6 +162,8 @@ class Safety {
   bool is_unknown_robot_ = false;
   bool misses_walls_ = false;
   bool wheels_spin_ = false;
+  std::uint32_t times_let_drive_ = 0;
+  bool has_forgotten_blindness_ = false;
   std::optional<Timestamp> low_battery_since_;
   std::optional<Timestamp> no_battery_since_;
   bool has_no_battery_ = false;

@@ -50,6 +50,7 @@ void DriveDesk::keep_switch(Timestamp now) {
 // --- what goes out ---
 
 void DriveDesk::tick(Timestamp now) {
+  tell_what_is_forgotten();
   keep_switch(now);  // the laser may have stopped the robot, or the last write to disk may have failed
   send_allowed_motion(now);
 }
@@ -82,6 +83,14 @@ void DriveDesk::send_allowed_motion(Timestamp now) {
   wiring_.obey(wiring_.session.drive({now, told.speed_m_per_s, told.turn_rate_rad_per_s}, now));
 }
 
+/// A person may have said so here, or by the MOTORS button.
+void DriveDesk::tell_what_is_forgotten() {
+  if (wiring_.telemetry.times_let_drive.value() == safety_.times_let_drive()) return;
+  wiring_.telemetry.times_let_drive.set(safety_.times_let_drive());
+  if (safety_.has_forgotten_blindness())
+    wiring_.log("a person said drive: what the laser has ceased to see is held against it no more");
+}
+
 void DriveDesk::tell_why_it_stands(navigation::StopReason unfit) {
   const LogLine own = may_ever_drive_ ? stop_log_.line(allowed_.stop) : LogLine{};
   const LogLine of_planners = stop_log_.line_for_planners(unfit, pose_stop_);
@@ -105,7 +114,7 @@ void DriveDesk::take(const PilotWord& word, Timestamp now) {
   pose_stop_ = word.pose;
   safety_.set_wheels_spin(word.wheels_spin);
   safety_.set_misses_walls(word.misses_walls);
-  if (word.expects_no_range) safety_.expect_no_range(now);
+  safety_.expect_no_range(word.expects_no_range ? std::optional{word.command.time} : std::nullopt);
   if (in_hand_of_ != 0 || !wiring_.session.permission().holds()) return;
   safety_.command(word.command, now, word.held_by);
 }
@@ -119,10 +128,17 @@ control::CommandOutcome DriveDesk::let_drive(const Request& request, Timestamp n
   return request.may_drive ? switch_on(request, now) : switch_off(request.ticket, now);
 }
 
+/// Of what it stands for now, what a person's word may end.
+navigation::StopReason DriveDesk::ended_by_a_word(Timestamp now) const {
+  using navigation::StopReason;
+  const StopReason unfit = safety_.unfit(now);
+  return waits_for_person(unfit) || unfit == StopReason::kLaserBlind ? unfit : StopReason::kNone;
+}
+
 /// Refused as long as anything speaks against it: a refusal must not drive later, by itself. Where this daemon never
 /// drives, the word still ends what waits for a person, for planners: STOP and `drive off` must not do that.
 control::CommandOutcome DriveDesk::switch_on(const Request& request, Timestamp now) {
-  const navigation::StopReason waited_for = safety_.waits_for();
+  const navigation::StopReason waited_for = ended_by_a_word(now);
   if (!may_ever_drive_ && waited_for == navigation::StopReason::kNone) return {request.ticket, false, kNeverDrives};
   if (now - request.asked > kRequestLife) {
     return {request.ticket, false, "it was asked for too long ago: say so again"};
@@ -131,7 +147,8 @@ control::CommandOutcome DriveDesk::switch_on(const Request& request, Timestamp n
     return {request.ticket, false, "the STOP button is pressed: let it go first"};
   }
   safety_.let_drive_again();
-  if (const navigation::StopReason held_by = safety_.waits_for(); held_by != navigation::StopReason::kNone) {
+  const navigation::StopReason held_by = may_ever_drive_ ? safety_.waits_for() : ended_by_a_word(now);
+  if (held_by != navigation::StopReason::kNone) {
     return {request.ticket, false, "it stands: " + std::string(name_of(held_by)) + "; say so again when that is over"};
   }
   if (!may_ever_drive_) {

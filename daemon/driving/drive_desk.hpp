@@ -73,12 +73,14 @@ class DriveDesk {
  private:
   void keep_switch(Timestamp now);
   void send_allowed_motion(Timestamp now);
+  void tell_what_is_forgotten();
   void tell_why_it_stands(navigation::StopReason unfit);
   void tell(const LogLine& line) const;
   void show(navigation::StopReason stop, const navigation::Motion& told);
   void put_in_hand_of(std::uint64_t who);
   [[nodiscard]] control::CommandOutcome switch_on(const Request& request, Timestamp now);
   [[nodiscard]] control::CommandOutcome switch_off(std::uint64_t ticket, Timestamp now);
+  [[nodiscard]] navigation::StopReason ended_by_a_word(Timestamp now) const;
   [[nodiscard]] std::string when_it_drives() const;
 
   Wiring wiring_;

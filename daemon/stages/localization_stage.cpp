@@ -132,8 +132,10 @@ void LocalizationStage::take_transients(std::uint32_t scan) {
 }
 
 void LocalizationStage::pilot(const TrackedScan& tracked) {
-  const PilotWord word = pilot_.observe(
-      tracked, {.fit = step_.fit(), .start_fits = fit_watch_.start_fits(), .transients = transients_.get()});
+  const PilotWord word = pilot_.observe(tracked, {.fit = step_.fit(),
+                                                  .start_fits = fit_watch_.start_fits(),
+                                                  .transients = transients_.get(),
+                                                  .times_let_drive = wiring_.telemetry.times_let_drive.value()});
   wiring_.telemetry.pose_stop.set(static_cast<std::uint8_t>(word.pose));
   wiring_.telemetry.wanted_speed_m_per_s.set(word.command.speed_m_per_s);
   wiring_.telemetry.wanted_turn_rate_rad_per_s.set(word.command.turn_rate_rad_per_s);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/steps/pilot_step.hpp"
 
-#include "navigation/laser_watch.hpp"
+#include <utility>
+
 #include "navigation/mapped_walls.hpp"
 #include "navigation/remembered_obstacles.hpp"
 
@@ -30,12 +31,12 @@ PilotWord PilotStep::observe(const TrackedScan& tracked, const Seen& seen) {
   word.command.time = tracked.scan.time;
   word.pose = pose_watch_.observe({tracked.estimate, seen.fit, seen.start_fits});
   word.wheels_spin = tracked.stood_m > kSpinsForM;
+  if (std::exchange(times_let_drive_, seen.times_let_drive) != seen.times_let_drive) dead_beams_.begin_anew();
   dead_beams_.observe(tracked.scan);
   if (word.pose == StopReason::kNone) dead_beams_.hold_against_map(tracked);
   word.misses_walls = dead_beams_.hide_a_sector();
   word.held_by = drives_without_pose_ ? StopReason::kNone : word.pose;
-  word.expects_no_range = navigation::brings_nothing(tracked.scan) && word.pose == StopReason::kNone &&
-                          navigation::expects_no_range(tracked);
+  word.expects_no_range = word.pose == StopReason::kNone && navigation::expects_no_range(tracked);
   if (wander_ && word.held_by == StopReason::kNone) {
     word.command = wander_->step(tracked, obstacles_beside(tracked, seen));
   }

@@ -25,7 +25,7 @@ struct PilotWord {
   navigation::StopReason pose = navigation::StopReason::kNone;     ///< why nobody should drive by this pose
   bool wheels_spin = false;                                        ///< they turn, and the scans stand
   bool misses_walls = false;                                       ///< a part of the laser never sees what the map has
-  bool expects_no_range = false;  ///< the map knows this place, and nothing that the laser could reach
+  bool expects_no_range = false;  ///< the map has nothing within reach of the beams without a range
 };
 
 class PilotStep {
@@ -37,6 +37,7 @@ class PilotStep {
     std::optional<double> fit;                       ///< as LocalizationStep::fit()
     bool start_fits = true;                          ///< as FitWatch::start_fits()
     const TransientObstacles* transients = nullptr;  ///< what differs from the map now; null: not known
+    std::uint32_t times_let_drive = 0;               ///< as Safety::times_let_drive()
   };
   [[nodiscard]] PilotWord observe(const TrackedScan& tracked, const Seen& seen);
   /// In the middle of a run: from the next scan on.
@@ -49,6 +50,7 @@ class PilotStep {
   bool drives_without_pose_;
   navigation::PoseWatch pose_watch_;
   navigation::DeadBeams dead_beams_;
+  std::uint32_t times_let_drive_ = 0;
   std::optional<navigation::Wander> wander_;  // nothing: nobody drives in this run
 };
 

@@ -75,8 +75,9 @@ struct Telemetry {
   Gauge<std::uint8_t> drive_switch;  ///< drivers::pioneer::DriveSwitch: what a person said last
   Gauge<double> told_speed_m_per_s, told_turn_rate_rad_per_s;  ///< what the robot was told last
   Gauge<double> battery_v;
-  Gauge<std::uint8_t> stop_reason;  ///< navigation::StopReason
-  Gauge<std::uint8_t> unfit;        ///< navigation::StopReason: what of robot and laser forbids to drive
+  Gauge<std::uint8_t> stop_reason;       ///< navigation::StopReason
+  Gauge<std::uint8_t> unfit;             ///< navigation::StopReason: what of robot and laser forbids to drive
+  Gauge<std::uint32_t> times_let_drive;  ///< by a person: who remembers what the laser has missed begins anew
   Gauge<std::uint64_t> odometry, odometry_lost, scans, scans_lost, recording_lost;
   // recorder thread
   Gauge<std::uint64_t> recorded_bytes;

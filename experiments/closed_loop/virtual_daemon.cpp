@@ -93,6 +93,7 @@ struct VirtualDaemon::Process {
     if (owner.params_.pilot) return {.command = owner.params_.pilot(scan)};
     const TrackedScan tracked = run ? localized(std::move(scan)) : without_pose(std::move(scan));
     daemon::PilotStep::Seen seen;
+    seen.times_let_drive = telemetry.times_let_drive.value();
     if (run) {
       seen.fit = run->localization().fit();
       const std::string line = fit_watch.observe(tracked, {seen.fit, run->localization().fit_of_all()}).text;

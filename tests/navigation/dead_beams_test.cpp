@@ -76,6 +76,29 @@ TEST(DeadBeams, SeeAgainWhereTheRobotStandsOnceTheWindowIsClean) {
   }
 }
 
+TEST(DeadBeams, AreCountedAnewOnceAPersonHasSaidDrive) {
+  Look look;
+  look.cover(true);
+  look.drive(8.0);
+  ASSERT_TRUE(look.beams.hide_a_sector());
+  look.beams.begin_anew();
+  EXPECT_FALSE(look.beams.hide_a_sector());
+  look.drive(5.0);
+  EXPECT_FALSE(look.beams.hide_a_sector());
+  look.drive(3.0);
+  EXPECT_TRUE(look.beams.hide_a_sector());
+}
+
+TEST(DeadBeams, DoNotSeeByImplausibleRanges) {
+  Look look;
+  look.cover(true);
+  look.drive(8.0);
+  look.cover(false);
+  look.tracked.scan.implausible = true;
+  look.look();
+  EXPECT_TRUE(look.beams.hide_a_sector());
+}
+
 TEST(DeadBeams, AreNotCountedTwiceFromOnePlaceNorWithoutAPose) {
   Look stands;
   stands.cover(true);

@@ -34,6 +34,7 @@ class Watched {
       watch.observe(odometry);
       watch.observe(scan);
       if (is_excused) watch.excuse(now);
+      if (!is_excused) watch.excuse(std::nullopt);
     }
   }
   void set(std::size_t first, std::size_t last, BeamKind kind) {
@@ -109,6 +110,74 @@ TEST(LaserWatch, TakesASectorThatBreaksOffAtOnceForCoveredUntilItSeesAgain) {
   EXPECT_EQ(laser.watch.believed(laser.scan).beams[90].kind, BeamKind::kRange);
 }
 
+TEST(LaserWatch, LetsTheMapExcuseASectorButNotWhatBreaksOffAfterThat) {
+  Watched laser;
+  laser.is_excused = true;
+  laser.pass(1.0);
+  laser.set(60, 120, BeamKind::kBeyondMaximum);
+  laser.pass(kScanS);
+  EXPECT_EQ(laser.watch.believed(laser.scan).beams[90].kind, BeamKind::kBeyondMaximum) << "the map has nothing there";
+  laser.pass(5.0);
+  EXPECT_FALSE(laser.watch.sees_nothing());
+  laser.is_excused = false;  // it has come to where the map has walls, and still no range
+  laser.pass(2 * kScanS);
+  EXPECT_TRUE(laser.watch.sees_nothing()) << "a covered lens stays one";
+  EXPECT_EQ(laser.watch.believed(laser.scan).beams[90].kind, BeamKind::kNotValid);
+
+  Watched covered;
+  covered.is_excused = true;
+  covered.pass(0.3);
+  covered.set(60, 120, BeamKind::kBeyondMaximum);  // nothing has been said of this scan yet
+  covered.now += duration_from_seconds(kScanS);
+  covered.scan.time = covered.now;
+  covered.watch.observe(covered.scan);
+  EXPECT_EQ(covered.watch.believed(covered.scan).beams[90].kind, BeamKind::kNotValid);
+}
+
+TEST(LaserWatch, ForgetsACoveredSectorByAPersonsWordAlone) {
+  Watched laser;
+  laser.pass(1.0);
+  laser.set(60, 120, BeamKind::kBeyondMaximum);
+  laser.pass(60.0);
+  EXPECT_TRUE(laser.watch.sees_nothing());
+  laser.watch.begin_anew();
+  EXPECT_FALSE(laser.watch.sees_nothing());
+  laser.pass(5.0);
+  EXPECT_FALSE(laser.watch.sees_nothing());
+  laser.set(0, 60, BeamKind::kBeyondMaximum);
+  laser.pass(1.3);
+  EXPECT_TRUE(laser.watch.sees_nothing()) << "another one";
+  laser.set(0, 181, BeamKind::kBeyondMaximum);
+  laser.pass(1.3);
+  laser.watch.begin_anew();
+  EXPECT_TRUE(laser.watch.sees_nothing()) << "there is no range at all";
+}
+
+TEST(LaserWatch, HoldsNothingAgainstScansThatCouldNotBeBelieved) {
+  Watched laser;
+  laser.set(60, 120, BeamKind::kBeyondMaximum);
+  laser.pass(1.0);
+  laser.set(60, 120, BeamKind::kRange);
+  laser.scan.implausible = true;
+  laser.pass(1.0);
+  laser.scan.implausible = false;
+  laser.set(60, 120, BeamKind::kBeyondMaximum);
+  laser.pass(2.0);
+  EXPECT_FALSE(laser.watch.sees_nothing());
+
+  Watched covered;
+  covered.pass(1.0);
+  covered.set(60, 120, BeamKind::kBeyondMaximum);
+  covered.pass(1.3);
+  covered.set(60, 120, BeamKind::kRange);
+  covered.scan.implausible = true;
+  covered.pass(0.3);
+  covered.set(60, 120, BeamKind::kBeyondMaximum);
+  covered.scan.implausible = false;
+  covered.pass(0.3);
+  EXPECT_TRUE(covered.watch.sees_nothing()) << "such ranges do not open a sector either";
+}
+
 TEST(LaserWatch, LetsASmallGapAndOneThatGrowsBe) {
   Watched laser;
   laser.pass(1.0);
@@ -145,7 +214,7 @@ TEST(LaserWatch, NoticesScansThatStandWhileTheWheelsTurn) {
   EXPECT_FALSE(laser.watch.motion().contradicts_wheels()) << "one such pair may be chance";
   laser.pass(1.3);
   EXPECT_TRUE(laser.watch.motion().contradicts_wheels());
-  laser.watch.forget_contradiction();
+  laser.watch.begin_anew();
   EXPECT_FALSE(laser.watch.motion().contradicts_wheels());
 }
 

@@ -123,6 +123,25 @@ TEST(FaultTrials, SayWhyTheRobotStandsAndThatNobodyMustDriveByItsPose) {
   }
 }
 
+/// 8 m of laser in a hall: when the right scans are back, much of the fan has nothing within reach.
+TEST(FaultTrials, AreForgottenWhenTheLaserSeesRightlyAgain) {
+  for (const char* fault :
+       {"laser-constant=5", "laser-turned=180", "laser-turned=45", "laser-upside-down", "laser-elsewhere=3"}) {
+    experiments::LoopRun run;
+    run.scenario = simulation::read_scenario(test::source_path("config/scenarios/hall.yaml"));
+    run.scenario.forklift.reset();
+    run.scenario.laser.max_range_m = 8.0;
+    run.scenario.faults.push_back(simulation::fault_order(fault, experiments::kConnectS + 10.0, 8.0));
+    run.settings = experiments::fitting(run.scenario);
+    run.seed = 4;
+    run.before_s = 30.0;
+    run.for_s = 30.0;
+    const experiments::LoopOutcome outcome = outcome_of(run);
+    EXPECT_GT(outcome.moved_m, 2.0) << fault << ": " << name_of(outcome.reason);
+    EXPECT_EQ(outcome.collisions, 0) << fault;
+  }
+}
+
 TEST(FaultTrials, StandAtAGivenPoseThatNoScanHasSupported) {
   experiments::LoopRun run;
   run.scenario = quiet_room();
