@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "navigation/laser_watch.hpp"
 #include "navigation/mapped_walls.hpp"
 
 namespace deltamap::navigation {
@@ -24,13 +25,14 @@ bool is_another_place(const std::optional<Pose2>& before, const Pose2& now) {
 void DeadBeams::observe(const Scan& scan) {
   const std::size_t step = beams_between(scan);
   missed_.resize((scan.beams.size() + step - 1) / step, 0);
+  if (is_implausible(scan)) return;
   for (std::size_t i = 0; i < missed_.size(); ++i) {
-    if (scan.beams[i * step].kind == BeamKind::kRange && !scan.implausible) missed_[i] = 0;
+    if (scan.beams[i * step].kind == BeamKind::kRange) missed_[i] = 0;
   }
 }
 
 void DeadBeams::hold_against_map(const TrackedScan& tracked) {
-  if (tracked.scan.implausible) return;
+  if (is_implausible(tracked.scan)) return;
   if (tracked.estimate.state != LocalizerState::kTracking || tracked.estimate.map == nullptr) return;
   if (!is_another_place(looked_from_, tracked.estimate.map_from_robot)) return;
   looked_from_ = tracked.estimate.map_from_robot;

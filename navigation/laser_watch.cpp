@@ -16,6 +16,8 @@ constexpr double kUncoveredShare = 1.0 / 12.0;  // less than that of the fan is 
 constexpr std::size_t kFewestAlike = 10;        // ranges; fewer could be the same by chance
 constexpr double kAlikeM = 0.1;                 // driven, or turned, while scans are the same: none can be
 constexpr double kAlikeRad = radians(5.0);
+constexpr double kCircleRad = radians(90.0);  // of ranges that are one and the same,
+constexpr float kCircleM = 0.01F;             // to the centimetre
 
 std::size_t ranges_in(const Scan& scan) {
   return static_cast<std::size_t>(std::count_if(scan.beams.begin(), scan.beams.end(),
@@ -27,11 +29,32 @@ bool are_alike(const Scan& one, const Scan& other) {
                     [](const Beam& a, const Beam& b) { return a.kind == b.kind && a.range_m == b.range_m; });
 }
 
+/// Over a part of the fan all ranges are the same.
+bool is_circle(const Scan& scan) {
+  if (scan.bearing_step_rad == 0.0) return false;
+  const auto wanted = static_cast<std::size_t>(std::ceil(kCircleRad / std::abs(scan.bearing_step_rad) - 1e-6)) + 1;
+  for (std::size_t first = 0; first + wanted <= scan.beams.size();) {
+    float least = scan.beams[first].range_m;
+    float most = least;
+    std::size_t beam = first;
+    for (; beam < first + wanted && scan.beams[beam].kind == BeamKind::kRange; ++beam) {
+      least = std::min(least, scan.beams[beam].range_m);
+      most = std::max(most, scan.beams[beam].range_m);
+      if (most - least > kCircleM) break;
+    }
+    if (beam == first + wanted) return true;
+    first += beam > first && scan.beams[beam].kind == BeamKind::kRange ? 1 : beam - first + 1;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool brings_nothing(const Scan& scan) {
   return static_cast<double>(ranges_in(scan)) < std::max(1.0, kFewShare * static_cast<double>(scan.beams.size()));
 }
+
+bool is_implausible(const Scan& scan) { return scan.implausible || is_circle(scan); }
 
 // --- a covered sector ---
 
@@ -84,12 +107,13 @@ void LaserWatch::observe(const Scan& scan) {
   newest_ = scan.time;
   const auto odom_from_robot = wheels_.odom_from_robot(scan.time);
   watch_repetition(scan, odom_from_robot);
-  if (repeats_ || scan.implausible)
+  const bool is_believable = !repeats_ && !is_implausible(scan);
+  if (!is_believable)
     sector_.skip();
   else
     sector_.observe(scan);
   watch_emptiness(scan);
-  if (odom_from_robot && !repeats_)
+  if (odom_from_robot && is_believable)
     (void)motion_.observe(scan, *odom_from_robot, wheels_.epoch());
   else
     motion_.skip();
@@ -115,6 +139,13 @@ bool LaserWatch::is_excused() const { return excused_at_ && seconds(newest_ - *e
 /// Not where all ranges broke off: the world does not vanish so. Nor by what was said before they did.
 bool LaserWatch::excuses_sector() const {
   return is_excused() && !empty_since_ && *excused_at_ >= sector_.broke_off_at();
+}
+
+Scan LaserWatch::proven(const Scan& scan) const {
+  Scan proven = sector_.without(scan);
+  if (!repeats_ && !is_implausible(scan)) return proven;
+  for (Beam& beam : proven.beams) beam.kind = BeamKind::kNotValid;
+  return proven;
 }
 
 void LaserWatch::begin_anew() {

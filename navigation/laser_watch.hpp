@@ -16,6 +16,9 @@ namespace deltamap::navigation {
 /// So few ranges that there are none.
 [[nodiscard]] bool brings_nothing(const Scan& scan);
 
+/// The laser flags its values, or they are alike over a quarter turn: no room is a circle around its laser.
+[[nodiscard]] bool is_implausible(const Scan& scan);
+
 /// A sector in which ranges broke off all at once is taken for covered until ranges come from it again, or a person has
 /// said drive.
 class CoveredSector {
@@ -58,6 +61,9 @@ class LaserWatch {
   [[nodiscard]] const MotionWatch& motion() const { return motion_; }
   /// The scan, and what it leaves open: beams of a covered sector as not valid.
   [[nodiscard]] Scan believed(const Scan& scan) const { return excuses_sector() ? scan : sector_.without(scan); }
+  /// What of it tells that a place is free: nothing that is implausible, or repeated, and no beam of a sector that
+  /// broke off, excused or not.
+  [[nodiscard]] Scan proven(const Scan& scan) const;
 
  private:
   struct Seen {

@@ -13,9 +13,11 @@ namespace deltamap::navigation {
 
 class LostEnds {
  public:
-  /// `odom_from_robot`: at Scan::time, in one frame; nothing where the wheels do not tell: all is forgotten.
+  /// `odom_from_robot`: at Scan::time, in one frame; nothing where the wheels do not tell: all is forgotten. Of a scan
+  /// that is not believed, no beam is valid.
   void observe(const Scan& scan, const std::optional<Pose2>& odom_from_robot);
-  /// In the robot's frame at the newest scan's time: of the last 1.5 s.
+  /// In the robot's frame at the newest scan's time: of the last 1.5 s; near the robot, until a beam has gone through
+  /// the place or the robot has left it.
   [[nodiscard]] const std::vector<Point2>& in_robot() const { return lost_in_robot_; }
 
  private:

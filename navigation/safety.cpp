@@ -40,11 +40,11 @@ Motion scaled(const Motion& motion, double share) {
 void Safety::observe(const Scan& scan) {
   laser_.observe(scan);
   const Scan believed = laser_.believed(scan);
-  lost_ends_.observe(believed, odom_at(scan));
+  lost_ends_.observe(laser_.proven(scan), odom_at(scan));
   scan_ = SeenScan{scan.time, scan.received, fan_of(scan), obstacles_of(believed, params_.obstacles)};
   scan_->obstacles_in_robot.insert(scan_->obstacles_in_robot.end(), lost_ends_.in_robot().begin(),
                                    lost_ends_.in_robot().end());
-  if (scan.implausible) implausible_at_ = scan.received;
+  if (is_implausible(scan)) implausible_at_ = scan.received;
   latches_[kLaserError].observe(scan.severity >= kLaserErrorSeverity);
   latches_[kWheelsSpin].observe(wheels_spin_ || laser_.motion().contradicts_wheels());
 }
@@ -100,6 +100,11 @@ StopReason Safety::waits_for() const {
   return held == latches_.end() ? StopReason::kNone : held->reason();
 }
 
+StopReason Safety::ends_by_word() const {
+  if (const StopReason held = waits_for(); held != StopReason::kNone) return held;
+  return misses_walls_ || laser_.sees_nothing() ? StopReason::kLaserBlind : StopReason::kNone;
+}
+
 // --- what forbids to move at all ---
 
 StopReason Safety::blocking_state(Timestamp now) const {
@@ -134,9 +139,9 @@ StopReason Safety::unfit_laser(Timestamp now) const {
   if (is_stale) return StopReason::kStaleLaser;
   if (!covers_way_ahead(scan_->fan, params_.robot_radius_m + params_.margin_m)) return StopReason::kWayUncovered;
   if (misses_walls_ || laser_.sees_nothing()) return StopReason::kLaserBlind;
-  if (laser_.repeats_itself()) return StopReason::kLaserFrozen;
-  const bool is_implausible = implausible_at_ && seconds(now - *implausible_at_) < params_.plausible_s;
-  return is_implausible ? StopReason::kImplausible : StopReason::kNone;
+  const bool was_implausible = implausible_at_ && seconds(now - *implausible_at_) < params_.plausible_s;
+  if (was_implausible) return StopReason::kImplausible;
+  return laser_.repeats_itself() ? StopReason::kLaserFrozen : StopReason::kNone;
 }
 
 // --- how fast ---

@@ -96,6 +96,8 @@ class Safety {
   [[nodiscard]] bool has_forgotten_blindness() const { return has_forgotten_blindness_; }
   /// What a person has yet to answer; kNone where nothing.
   [[nodiscard]] StopReason waits_for() const;
+  /// What a person's word may end: that, or what the laser has ceased to see; kNone where nothing.
+  [[nodiscard]] StopReason ends_by_word() const;
   /// It has to: until the scans have shown that the laser looks ahead.
   [[nodiscard]] bool creeps() const { return !laser_.motion().looks_ahead(); }
   /// The laser session tells what its variant and baud give.

@@ -42,7 +42,7 @@ void DriveDesk::obey_permission(Timestamp now) {
 void DriveDesk::keep_switch(Timestamp now) {
   const auto value = in_hand_of_ != 0
                          ? drivers::pioneer::DriveSwitch::kOffByOperator
-                         : switch_to_keep(wiring_.session.permission().drive_switch(), safety_.waits_for());
+                         : switch_to_keep(wiring_.session.permission().drive_switch(), safety_.ends_by_word());
   const std::string line = wiring_.kept.keep(value, now);
   if (!line.empty()) (wiring_.kept.why_not_kept().empty() ? wiring_.log : wiring_.warn)(line);
 }
@@ -128,17 +128,10 @@ control::CommandOutcome DriveDesk::let_drive(const Request& request, Timestamp n
   return request.may_drive ? switch_on(request, now) : switch_off(request.ticket, now);
 }
 
-/// Of what it stands for now, what a person's word may end.
-navigation::StopReason DriveDesk::ended_by_a_word(Timestamp now) const {
-  using navigation::StopReason;
-  const StopReason unfit = safety_.unfit(now);
-  return waits_for_person(unfit) || unfit == StopReason::kLaserBlind ? unfit : StopReason::kNone;
-}
-
 /// Refused as long as anything speaks against it: a refusal must not drive later, by itself. Where this daemon never
 /// drives, the word still ends what waits for a person, for planners: STOP and `drive off` must not do that.
 control::CommandOutcome DriveDesk::switch_on(const Request& request, Timestamp now) {
-  const navigation::StopReason waited_for = ended_by_a_word(now);
+  const navigation::StopReason waited_for = safety_.ends_by_word();
   if (!may_ever_drive_ && waited_for == navigation::StopReason::kNone) return {request.ticket, false, kNeverDrives};
   if (now - request.asked > kRequestLife) {
     return {request.ticket, false, "it was asked for too long ago: say so again"};
@@ -147,7 +140,7 @@ control::CommandOutcome DriveDesk::switch_on(const Request& request, Timestamp n
     return {request.ticket, false, "the STOP button is pressed: let it go first"};
   }
   safety_.let_drive_again();
-  const navigation::StopReason held_by = may_ever_drive_ ? safety_.waits_for() : ended_by_a_word(now);
+  const navigation::StopReason held_by = may_ever_drive_ ? safety_.waits_for() : safety_.ends_by_word();
   if (held_by != navigation::StopReason::kNone) {
     return {request.ticket, false, "it stands: " + std::string(name_of(held_by)) + "; say so again when that is over"};
   }

@@ -80,7 +80,6 @@ class DriveDesk {
   void put_in_hand_of(std::uint64_t who);
   [[nodiscard]] control::CommandOutcome switch_on(const Request& request, Timestamp now);
   [[nodiscard]] control::CommandOutcome switch_off(std::uint64_t ticket, Timestamp now);
-  [[nodiscard]] navigation::StopReason ended_by_a_word(Timestamp now) const;
   [[nodiscard]] std::string when_it_drives() const;
 
   Wiring wiring_;

@@ -26,6 +26,7 @@ class LoopWatch {
     begin_ = begin;
     outcome_.driven_before_m = outcome_.moved_m;
     outcome_.moved_m = 0.0;
+    outcome_.stopped_after_s = -1.0;
     outcome_.stops.clear();
     first_collision_ = world_.collisions().size();
     first_line_ = daemon_.log().size();

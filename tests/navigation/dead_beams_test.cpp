@@ -30,7 +30,8 @@ class Look {
     cover(false);
   }
   void cover(bool is_covered) {
-    tracked.scan.beams.assign(181, Beam{3.0F, 0.0F, BeamKind::kRange});
+    tracked.scan.beams.clear();
+    for (int i = 0; i < 181; ++i) tracked.scan.beams.push_back({i % 2 == 0 ? 3.0F : 3.02F, 0.0F, BeamKind::kRange});
     for (std::size_t i = kCoveredFrom; is_covered && i < 181; ++i)
       tracked.scan.beams[i].kind = BeamKind::kBeyondMaximum;
   }

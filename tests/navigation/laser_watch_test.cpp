@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "core/random.hpp"
@@ -227,6 +228,64 @@ TEST(LaserWatch, ComparesNothingAcrossAJumpOfTheOdometry) {
     laser.pass(kScanS);
   }
   EXPECT_FALSE(laser.watch.motion().contradicts_wheels());
+}
+
+TEST(LaserWatch, CallsScansImplausibleThatShowACircleAroundTheLaser) {
+  Scan scan;
+  scan.bearing_step_rad = radians(0.5);
+  scan.first_bearing_rad = radians(-90.0);
+  for (int i = 0; i < 361; ++i) {  // a room of 8 m by 8 m, seen from its middle
+    const double bearing_rad = scan.bearing_rad(static_cast<std::size_t>(i));
+    const double range_m = 4.0 / std::max(std::abs(std::cos(bearing_rad)), std::abs(std::sin(bearing_rad)));
+    scan.beams.push_back({static_cast<float>(range_m), 0.0F, BeamKind::kRange});
+  }
+  EXPECT_FALSE(is_implausible(scan));
+  const auto with_an_arc_of = [&](std::size_t beams) {
+    Scan arc = scan;
+    for (std::size_t i = 100; i < 100 + beams; ++i) arc.beams[i].range_m = i % 2 == 0 ? 2.0F : 2.008F;
+    return arc;
+  };
+  EXPECT_FALSE(is_implausible(with_an_arc_of(160))) << "a pillar, a bay";
+  EXPECT_TRUE(is_implausible(with_an_arc_of(181)));
+  Scan broken = with_an_arc_of(181);
+  broken.beams[190].kind = BeamKind::kBeyondMaximum;
+  EXPECT_FALSE(is_implausible(broken));
+  scan.implausible = true;
+  EXPECT_TRUE(is_implausible(scan)) << "the laser says so itself";
+  EXPECT_FALSE(is_implausible(Scan{}));
+}
+
+TEST(LostEnds, KeepWhatStandsNearUntilABeamHasGoneThroughItsPlace) {
+  for (const BeamKind back : {BeamKind::kRange, BeamKind::kBeyondMaximum}) {
+    Watched laser;
+    LostEnds ends;
+    const auto look = [&](double at_m = 0.0) {
+      laser.pass(0.1);
+      ends.observe(laser.scan, Pose2{at_m, 0.0, 0.0});
+      return ends.in_robot().size();
+    };
+    laser.is_alive = false;
+    for (std::size_t i = 80; i < 100; ++i) laser.scan.beams[i].range_m = 0.6F;
+    (void)look();
+    laser.set(0, 181, BeamKind::kNotValid);
+    for (int i = 0; i < 100; ++i) (void)look();
+    EXPECT_EQ(look(), 20u) << "the far ones are forgotten";
+    laser.set(0, 181, back);
+    for (Beam& beam : laser.scan.beams) beam.range_m = 4.0F;
+    EXPECT_EQ(look(), 0u);
+  }
+  Watched laser;
+  LostEnds ends;
+  for (Beam& beam : laser.scan.beams) beam.range_m = 0.6F;
+  laser.is_alive = false;
+  laser.pass(0.1);
+  ends.observe(laser.scan, Pose2{});
+  laser.set(0, 181, BeamKind::kNotValid);
+  laser.pass(3.0);
+  ends.observe(laser.scan, Pose2{});
+  EXPECT_FALSE(ends.in_robot().empty());
+  ends.observe(laser.scan, Pose2{-2.0, 0.0, 0.0});
+  EXPECT_TRUE(ends.in_robot().empty()) << "the robot has left";
 }
 
 TEST(LostEnds, KeepWhatWasSeenUntilSomethingIsSeenThere) {

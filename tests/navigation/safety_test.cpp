@@ -20,7 +20,7 @@ Scan hall(float range_m, Timestamp time = kNow) {
   scan.first_bearing_rad = -std::numbers::pi / 2.0;
   scan.bearing_step_rad = std::numbers::pi / 180.0;
   scan.max_range_m = 8.0;
-  scan.beams.assign(181, {range_m, 0.0F, BeamKind::kRange});
+  for (int i = 0; i < 181; ++i) scan.beams.push_back({i % 2 == 0 ? range_m : range_m + 0.02F, 0.0F, BeamKind::kRange});
   return scan;
 }
 

@@ -25,7 +25,7 @@ class Drive {
     scan.first_bearing_rad = -std::numbers::pi / 2.0;
     scan.bearing_step_rad = std::numbers::pi / 180.0;
     scan.max_range_m = 32.0;
-    scan.beams.assign(181, {6.0F, 0.0F, BeamKind::kRange});
+    for (int i = 0; i < 181; ++i) scan.beams.push_back({i % 2 == 0 ? 6.0F : 6.02F, 0.0F, BeamKind::kRange});
   }
 
   AllowedMotion tick() {
@@ -143,6 +143,11 @@ std::vector<Row> table() {
        false},
       {StopReason::kImplausible, [](Drive& d) { d.scan.implausible = true; },
        [](Drive& d) { d.scan.implausible = false; }, false, false},
+      {StopReason::kImplausible,
+       [](Drive& d) {
+         d.scan.beams.assign(181, {5.0F, 0.0F, BeamKind::kRange});
+       },
+       [](Drive& d) { d.flicker(); }, false, false},
       {StopReason::kPoseUnknown, pose(LocalizerState::kGlobal, right), tracked, false, false},
       {StopReason::kLost, pose(LocalizerState::kLost, right), tracked, false, false},
       {StopReason::kPoseWrong, pose(LocalizerState::kTracking, PoseVerdict::kWrong), tracked, false, false},
@@ -324,6 +329,8 @@ TEST(StopReasons, ImplausibleScanKeepsItStandingForAWhile) {
   drive.scan.implausible = false;
   EXPECT_EQ(drive.run_for(1.5).stop, StopReason::kImplausible);
   EXPECT_EQ(drive.run_for(1.0).stop, StopReason::kNone);
+  for (std::size_t i = 40; i < 131; ++i) drive.scan.beams[i].range_m = 5.0F;
+  EXPECT_EQ(drive.tick().stop, StopReason::kImplausible) << "a quarter turn of one range, at the first scan";
 }
 
 TEST(StopReasons, WarningsOfTheLaserAreNone) {

@@ -184,11 +184,13 @@ TEST(DriveDesk, ForgetsWhatTheLaserHasCeasedToSeeByAPersonsWordAndSaysSoOnce) {
   desk.lost_beams = 60;
   desk.pass(30.0);
   ASSERT_EQ(desk.desk.allowed().stop, navigation::StopReason::kLaserBlind);
+  EXPECT_EQ(desk.on_disk(), drivers::pioneer::DriveSwitch::kOffAtRobot) << "a restart is no person";
   const std::uint32_t words = desk.telemetry.times_let_drive.value();
   desk.told.clear();
   EXPECT_TRUE(says(true).done);
   desk.pass(1.0);
   EXPECT_TRUE(desk.is_driven());
+  EXPECT_EQ(desk.on_disk(), drivers::pioneer::DriveSwitch::kOn);
   EXPECT_EQ(desk.telemetry.times_let_drive.value(), words + 1) << "what else remembers has to be told";
   EXPECT_EQ(desk.told, (std::vector<std::string>{
                            "a person said drive: what the laser has ceased to see is held against it no more",

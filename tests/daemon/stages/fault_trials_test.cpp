@@ -123,6 +123,24 @@ TEST(FaultTrials, SayWhyTheRobotStandsAndThatNobodyMustDriveByItsPose) {
   }
 }
 
+/// Whoever drives by hand drives on towards a wall that a laser with one range for all does not show.
+TEST(FaultTrials, OfOneRangeForAllBeamsStopAPersonsHandAtOnce) {
+  for (std::uint64_t seed = 330; seed < 350; ++seed) {
+    experiments::LoopRun run;
+    run.scenario = quiet_room();
+    run.scenario.laser.max_range_m = 8.0;
+    run.before_s = 12.97;
+    run.scenario.faults.push_back(simulation::fault_order("laser-constant=5", experiments::kConnectS + run.before_s));
+    run.settings = experiments::fitting(run.scenario);
+    run.seed = seed;
+    run.for_s = 27.0;
+    run.has_pilot_gone_wild = true;
+    const experiments::LoopOutcome outcome = outcome_of(run);
+    EXPECT_EQ(outcome.collisions, 0) << "seed " << seed << " at " << outcome.fastest_collision_m_per_s << " m/s";
+    EXPECT_LT(outcome.stopped_after_s, 0.5) << "seed " << seed;
+  }
+}
+
 /// 8 m of laser in a hall: when the right scans are back, much of the fan has nothing within reach.
 TEST(FaultTrials, AreForgottenWhenTheLaserSeesRightlyAgain) {
   for (const char* fault :
