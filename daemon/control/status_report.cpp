@@ -50,8 +50,9 @@ void add_estimate(Json& json, const Telemetry& t) {
   json["belief"] = belief_json(estimate);
   json["particles"] = estimate.particles.value();
   json["n_eff"] = estimate.n_eff.value();
-  json["w_avg"] = estimate.w_avg.value();
-  json["fit"] = !is_known || t.fit.value() < 0.0 ? Json(nullptr) : Json(t.fit.value());
+  const bool is_told = is_known && t.fit.value() >= 0.0;  // by a beam; else the weight is an older scan's
+  json["w_avg"] = is_told ? Json(estimate.w_avg.value()) : Json(nullptr);
+  json["fit"] = is_told ? Json(t.fit.value()) : Json(nullptr);
   json["revision"] = estimate.revision.value();
 }
 

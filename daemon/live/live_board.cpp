@@ -68,8 +68,8 @@ void LiveBoard::show(const TrackedScan& tracked, const LocalizationRow& row, dou
   if (is_watched && particles != nullptr) sample = localization::particles::sampled_poses(*particles, kParticlesShown);
   const std::unique_lock lock{mutex_, std::try_to_lock};
   if (!lock.owns_lock()) return;
-  if (is_sampled) keep_sample(row, latency_s);
   keep_scan(tracked, row, latency_s);
+  if (is_sampled) keep_sample(row, latency_s);
   scan_.particles = std::move(sample);
 }
 
@@ -90,7 +90,8 @@ void LiveBoard::keep_sample(const LocalizationRow& row, double latency_s) {
   };
   set(LiveSample::kX, row.map_from_robot.x);
   set(LiveSample::kY, row.map_from_robot.y);
-  set(LiveSample::kWAvg, row.w_avg);
+  const bool has_return = !scan_.beams.empty();  // else the weight is an older scan's
+  set(LiveSample::kWAvg, has_return ? row.w_avg : LiveFigures::kUnknown);
   set(LiveSample::kWFast, row.w_fast);
   set(LiveSample::kWSlow, row.w_slow);
   set(LiveSample::kRD, row.r_d);

@@ -72,7 +72,6 @@ void add_estimate(Text& text, const EstimateGauges& e) {
   text.gauge("map_wrong_ratio", "P(map wrong) of what is in view.", e.map_wrong.value());
   text.gauge("particles", "Particles of the filter.", e.particles.value());
   text.gauge("effective_sample_size", "N_eff before resampling.", e.n_eff.value());
-  text.gauge("scan_weight_ratio", "w_avg of the newest scan.", e.w_avg.value());
 }
 
 void add_map(Text& text, const Telemetry& t) {
@@ -111,6 +110,8 @@ std::string metrics_text(const Telemetry& telemetry, double since_start_s) {
   Text text;
   add_scans(text, telemetry);
   add_estimate(text, telemetry.estimate);
+  if (telemetry.fit.value() >= 0.0)  // else it is an older scan's
+    text.gauge("scan_weight_ratio", "w_avg of the newest scan.", telemetry.estimate.w_avg.value());
   add_map(text, telemetry);
   add_machine(text, telemetry, since_start_s);
   return text.take();

@@ -119,6 +119,16 @@ std::string outputs_lines(const Json& s) {
   return line("saving", "%s", written.empty() ? "nothing" : written.c_str()) + paused;
 }
 
+std::string filter_line(const Json& s) {
+  const bool is_told = s.contains("/fit"_json_pointer) && s["fit"].is_number();
+  if (!is_told) {
+    return line("filter", "%.0f particles, n_eff %.0f; no beam tells how well the scan fits", number(s, "/particles"),
+                number(s, "/n_eff"));
+  }
+  return line("filter", "%.0f particles, n_eff %.0f, w_avg %.3f, %.0f %% of the beams fit", number(s, "/particles"),
+              number(s, "/n_eff"), number(s, "/w_avg"), 100.0 * number(s, "/fit"));
+}
+
 }  // namespace
 
 std::string status_table(const std::string& reply_line) {
@@ -127,8 +137,7 @@ std::string status_table(const std::string& reply_line) {
   std::string text = line("state", "%s", word(s, "/state").c_str());
   text += pose_line(s);
   text += belief_lines(s);
-  text += line("filter", "%.0f particles, n_eff %.0f, w_avg %.3f, %.0f %% of the beams fit", number(s, "/particles"),
-               number(s, "/n_eff"), number(s, "/w_avg"), 100.0 * number(s, "/fit"));
+  text += filter_line(s);
   text += map_line(s);
   text += gate_line(s);
   text += scans_line(s);

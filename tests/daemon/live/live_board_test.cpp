@@ -194,9 +194,15 @@ TEST_F(LiveBoardTest, SamplesComeOnceASecondWithTheRateOfScans) {
     EXPECT_FLOAT_EQ(sample.values[LiveSample::kScansPerSecond], 4.0F);
     EXPECT_FLOAT_EQ(sample.values[LiveSample::kWAvg], 0.75F);
   }
-  EXPECT_EQ(board_.samples_from(8, 100).items.size(), 2u);
+  TrackedScan blind = tracked_scan();
+  blind.scan.beams[0].kind = BeamKind::kBeyondMaximum;
+  for (int i = 41; i < 46; ++i) board_.show(blind, row_at(i), 0.002);
+  const auto without_a_return = board_.samples_from(10, 100);
+  ASSERT_EQ(without_a_return.items.size(), 1u);
+  EXPECT_TRUE(std::isnan(without_a_return.items[0].values[LiveSample::kWAvg])) << "that would be an older scan's";
+  EXPECT_EQ(board_.samples_from(9, 100).items.size(), 2u);
   EXPECT_EQ(board_.samples_from(0, 3).next(), 3u);
-  EXPECT_TRUE(board_.samples_from(10, 100).items.empty());
+  EXPECT_TRUE(board_.samples_from(11, 100).items.empty());
 }
 
 TEST_F(LiveBoardTest, WhatTheStagesHaveUsedSinceTheSampleBeforeIsAShareOfAProcessor) {

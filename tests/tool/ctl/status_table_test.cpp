@@ -37,6 +37,13 @@ TEST(StatusTable, SaysWhyARobotIsNeverDriven) {
   }
 }
 
+TEST(StatusTable, TellsNoWeightOfAScanWithoutAReturn) {
+  expect_line(R"({"particles":500,"n_eff":400,"w_avg":0.731,"fit":0.9})",
+              "filter       500 particles, n_eff 400, w_avg 0.731, 90 % of the beams fit");
+  expect_line(R"({"particles":500,"n_eff":400,"w_avg":null,"fit":null})",
+              "filter       500 particles, n_eff 400; no beam tells how well the scan fits");
+}
+
 TEST(StatusTable, SaysWhyPlannersMustNotDrive) {
   expect_line(R"({"may_drive_by_pose":true,"forbidden_by":"none"})", "planners     may drive by this pose");
   expect_line(R"({"may_drive_by_pose":false,"forbidden_by":"laser sees nothing"})",
