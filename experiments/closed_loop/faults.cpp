@@ -62,7 +62,7 @@ std::vector<Run> runs_of(const Options& options) {
       if (options.quick && from_start) continue;
       for (std::size_t i = 0; i < (options.quick ? 1 : kPlaces.size()); ++i) {
         const std::string begins = from_start ? "from-the-start" : "while-driving";
-        const std::uint64_t seed = options.seed + i;
+        const std::uint64_t seed = options.seed + runs.size();  // another for each fault and place
         runs.push_back({fault + "-" + begins + "-" + kPlaces[i].name, [=] {
                           Outcome outcome = outcome_of_fault(run_in(options, kPlaces[i], fault, from_start, seed));
                           outcome.labels.insert(outcome.labels.begin(),

@@ -12,24 +12,33 @@ namespace deltamap::experiments {
 namespace {
 
 constexpr double kDriveMinutes = 15.0;
-constexpr int kDrivesAPlace = 10;
+constexpr int kDrivesAPlace = 8;
 
 struct Place {
   const char* name;
   const char* file;
   double max_range_m;
+  const char* variant = "180/1";
 };
-/// Wide halls seen by 8 m of laser, aisles, people, glass, a map that is out of date: 20 hours in all.
-constexpr std::array kPlaces{Place{"hall", "hall.yaml", 32.0},   Place{"hall-8m", "hall.yaml", 8.0},
-                             Place{"people", "demo.yaml", 32.0}, Place{"people-8m", "demo.yaml", 8.0},
-                             Place{"depot", "depot.yaml", 32.0}, Place{"depot-8m", "depot.yaml", 8.0},
-                             Place{"racks", "racks.yaml", 32.0}, Place{"changed", "changed.yaml", 32.0}};
+/// Wide halls seen by 8 m of laser, aisles, people, a map that is out of date, the laser as delivered, and a corridor
+/// with a wall of glass: 20 hours in all.
+constexpr std::array kPlaces{Place{"hall", "hall.yaml", 32.0},
+                             Place{"hall-8m", "hall.yaml", 8.0},
+                             Place{"people", "demo.yaml", 32.0},
+                             Place{"people-8m", "demo.yaml", 8.0},
+                             Place{"depot", "depot.yaml", 32.0},
+                             Place{"depot-8m", "depot.yaml", 8.0},
+                             Place{"racks", "racks.yaml", 32.0},
+                             Place{"changed", "changed.yaml", 32.0},
+                             Place{"hall-half-degrees", "hall.yaml", 32.0, "180/0.5"},
+                             Place{"glass-corridor", "glass_corridor.yaml", 32.0}};
 
 LoopRun run_of(const Options& options, const Place& place, std::uint64_t seed) {
   LoopRun run;
   run.scenario = *scenario_of(options, place.file);
   run.scenario.laser.max_range_m = place.max_range_m;
   run.settings = fitting(run.scenario);
+  run.settings.laser.session.variant = *drivers::lms200::variant_named(place.variant);
   run.settings.localizer = options.localizer;
   run.settings.mapping = options.mapping;
   run.seed = seed;
@@ -86,7 +95,8 @@ Report report_of(const std::vector<Outcome>& outcomes) {
       table.rows.push_back({outcome.label("place"), outcome.label("seed"), outcome.label("why"), outcome.label("end")});
   }
   const Certainty runs{.runs = outcomes.size()};
-  report.figures = {{"stops without a fault", stops, "", Target{.most = 1.0}, "", runs},
+  report.figures = {{"stops without a fault (180/1, 180/0.5 in the hall, a corridor of glass)", stops, "",
+                     Target{.most = 1.0}, "", runs},
                     {"collisions with what stands", collisions, "", {}, "", runs},
                     {"driven", hours, "h", {}, "", runs},
                     {"way", moved_m / 1000.0, "km", {}, "", runs}};
