@@ -15,17 +15,22 @@ constexpr std::size_t kFewestBeams = 20;
 
 // What the wheels may be off in what they claim.
 constexpr std::array kShares{0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2};
-constexpr std::array kTurnsRad{-0.04, -0.02, 0.0, 0.02, 0.04};
+constexpr std::array kTurnsRad{0.0, -0.01, 0.01, -0.02, 0.02, -0.03, 0.03, -0.04, 0.04};
+// Between those that are tried: half a step.
+constexpr double kOffShare = 0.05;
+constexpr double kOffRad = 0.005;
 constexpr double kAlikeBeams = 3.0;   // neighbouring beams say the same
 constexpr double kElsewhere = 0.05;   // likelihood of an end that lies off, relative to one that fits
 constexpr double kHidden = 0.3;       // and of one that something would have to hide now
 constexpr double kOneSurfaceM = 0.3;  // between neighbouring ends
+constexpr double kStraight = 0.985;   // cosine of 10°
 constexpr double kAcrossM = 0.02;     // deviation of an end across its surface
 
 /// A scan, asked for the surface that it sees in a direction.
 class SeenSurfaces {
  public:
-  SeenSurfaces(const Scan& scan, std::span<const RayInRobot> rays) : scan_{scan}, rays_{rays} {}
+  SeenSurfaces(const Scan& scan, std::span<const RayInRobot> rays, double claimed_m)
+      : scan_{scan}, rays_{rays}, across_m2_{kAcrossM * kAcrossM + kOffShare * kOffShare * claimed_m * claimed_m} {}
 
   /// Log-likelihood of an end of an earlier scan, given where it would lie now, robot frame; 0 where the scan says
   /// nothing about it.
@@ -42,21 +47,31 @@ class SeenSurfaces {
     const Point2 b = rays_[beam + 1].end.cast<double>();
     const double range_m = arm.norm();
     const double seen_m = std::max(scan_.beams[beam].range_m, scan_.beams[beam + 1].range_m);
-    const double off_m = [&] {
-      const Point2 along = b - a;
-      const double length_m = along.norm();
-      if (length_m < kOneSurfaceM + 2.0 * range_m * scan_.bearing_step_rad && length_m > 1e-6)
-        return std::abs(along.x() * (end - a).y() - along.y() * (end - a).x()) / length_m;
-      return std::min((end - a).norm(), (end - b).norm());
-    }();
-    if (range_m > seen_m + 0.1 && off_m > 3.0 * kAcrossM) return std::log(kHidden);
-    const double deviations = off_m / kAcrossM;
-    return std::log(kElsewhere + (1.0 - kElsewhere) * std::exp(-0.5 * deviations * deviations));
+    const Point2 along = b - a;
+    const double length_m = along.norm();
+    const bool is_short = length_m < kOneSurfaceM + 2.0 * range_m * scan_.bearing_step_rad;
+    const double off_m = length_m > 0.0 && (is_short || is_straight(beam))
+                             ? std::abs(along.x() * (end - a).y() - along.y() * (end - a).x()) / length_m
+                             : std::min((end - a).norm(), (end - b).norm());
+    const double deviations2 = off_m * off_m / (across_m2_ + kOffRad * kOffRad * range_m * range_m);
+    if (range_m > seen_m + 0.1 && deviations2 > 9.0) return std::log(kHidden);
+    return std::log(kElsewhere + (1.0 - kElsewhere) * std::exp(-0.5 * deviations2));
   }
 
  private:
+  /// From this beam to the next a wall goes on that is seen at a slant: so do the ends before, or those after.
+  [[nodiscard]] bool is_straight(std::size_t beam) const {
+    const auto end = [this](std::size_t i) { return Point2{rays_[i].end.cast<double>()}; };
+    const auto is_range = [this](std::size_t i) { return i < rays_.size() && scan_.beams[i].kind == BeamKind::kRange; };
+    const Point2 along = (end(beam + 1) - end(beam)).normalized();
+    const bool as_before =
+        beam > 0 && is_range(beam - 1) && along.dot((end(beam) - end(beam - 1)).normalized()) > kStraight;
+    return as_before || (is_range(beam + 2) && along.dot((end(beam + 2) - end(beam + 1)).normalized()) > kStraight);
+  }
+
   const Scan& scan_;
   std::span<const RayInRobot> rays_;
+  double across_m2_;  // variance of an end across its surface, beside what a turn makes of it
 };
 
 }  // namespace
@@ -92,7 +107,7 @@ bool Standstill::is_same(const Scan& scan) const {
 }
 
 double Standstill::log_odds(const Scan& scan, std::span<const RayInRobot> rays, const Pose2& claimed) const {
-  const SeenSurfaces seen{scan, rays};
+  const SeenSurfaces seen{scan, rays, claimed.position().norm()};
   const auto likelihood = [&](const Pose2& kept_from_robot) {
     const Pose2 robot_from_kept = inverse(kept_from_robot);
     double sum = 0.0;
