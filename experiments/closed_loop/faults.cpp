@@ -63,7 +63,7 @@ std::vector<Run> runs_of(const Options& options) {
       for (std::size_t i = 0; i < (options.quick ? 1 : kPlaces.size()); ++i) {
         const std::string begins = from_start ? "from-the-start" : "while-driving";
         const std::uint64_t seed = options.seed + runs.size();  // another for each fault and place
-        runs.push_back({fault + "-" + begins + "-" + kPlaces[i].name, [=] {
+        runs.push_back({std::string{fault}.append("-").append(begins).append("-").append(kPlaces[i].name), [=] {
                           Outcome outcome = outcome_of_fault(run_in(options, kPlaces[i], fault, from_start, seed));
                           outcome.labels.insert(outcome.labels.begin(),
                                                 {{"fault", fault}, {"begins", begins}, {"place", kPlaces[i].name}});
@@ -123,6 +123,7 @@ TextTable table_of_faults(const std::vector<Outcome>& outcomes) {
 
 std::vector<double> numbers(const std::vector<Outcome>& outcomes, const char* name) {
   std::vector<double> values;
+  values.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) values.push_back(outcome.number(name));
   return values;
 }
@@ -132,6 +133,7 @@ double sum_of(const std::vector<double>& values) { return std::accumulate(values
 Chart chart_of_ways(std::vector<double> ways_m) {
   std::sort(ways_m.begin(), ways_m.end());
   std::vector<std::pair<double, double>> ways;
+  ways.reserve(ways_m.size());
   for (const double way_m : ways_m) ways.emplace_back(static_cast<double>(ways.size() + 1), way_m);
   return {"the way of the body after a fault began", "run, from the shortest", "m", {{"way", ways}}};
 }
