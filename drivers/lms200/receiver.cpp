@@ -35,7 +35,7 @@ Receiver::Content Receiver::take(const Telegram& telegram) {
       take_status(telegram, content);
       break;
     case response::kPowerOn:
-      content.log.push_back("laser has started up");
+      content.log.emplace_back("laser has started up");
       forget();
       break;
     case response::kVariant:
@@ -150,7 +150,7 @@ DecoderCounts Receiver::counts() const {
 double Receiver::nominal_period_s() const {
   constexpr std::size_t kBytesAroundWords = 10;  // B6
   const ScanVariant variant = variant_ && is_possible(*variant_) ? *variant_ : params_.variant;
-  const double line_s = seconds(line_time(2 * variant.values() + kBytesAroundWords, baud()));
+  const double line_s = seconds(line_time(std::size_t{2} * variant.values() + kBytesAroundWords, baud()));
   return std::ceil(line_s / variant.scan_duration_s()) * variant.scan_duration_s();
 }
 

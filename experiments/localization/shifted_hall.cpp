@@ -79,6 +79,7 @@ Series error_series(const Outcome& outcome) {
 
 std::vector<double> numbers(const std::vector<const Outcome*>& drives, const char* name) {
   std::vector<double> values;
+  values.reserve(drives.size());
   for (const Outcome* drive : drives) values.push_back(drive->number(name));
   return values;
 }

@@ -54,7 +54,8 @@ class SurfelMap {
   static constexpr float kYoungS = 1.0F;
 
   [[nodiscard]] static std::size_t slot_of(std::int32_t column, std::int32_t row) {
-    return static_cast<std::size_t>(((row & (kSide - 1)) * kSide + (column & (kSide - 1))) * kEach);
+    const auto at = [](std::int32_t cell) { return static_cast<std::size_t>(cell & (kSide - 1)); };
+    return (at(row) * kSide + at(column)) * kEach;
   }
   [[nodiscard]] bool is_alive(const Surfel& surfel) const;
 
