@@ -93,7 +93,8 @@ class Desk {
   Scan hall() {
     Scan scan = free_hall();
     const int first = (181 - lost_beams) / 2;
-    for (int i = first; i < first + lost_beams; ++i) scan.beams[i].kind = BeamKind::kBeyondMaximum;
+    for (int i = first; i < first + lost_beams; ++i)
+      scan.beams[static_cast<std::size_t>(i)].kind = BeamKind::kBeyondMaximum;
     return scan;
   }
 
