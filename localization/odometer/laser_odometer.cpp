@@ -83,8 +83,6 @@ Pose2 stretched(const Pose2& motion, double factor) {
   return {factor * motion.x, factor * motion.y, wrapped_angle(factor * motion.theta)};
 }
 
-}  // namespace
-
 /// Far around the pose that the wheels tell: nothing where the scan fits no better elsewhere.
 std::optional<Pose2> searched(ScanFitter& fitter, const Pose2& around, double inliers) {
   constexpr double kTurnsRad = 1.2;
@@ -112,6 +110,8 @@ std::optional<Pose2> searched(ScanFitter& fitter, const Pose2& around, double in
   if (fitter.inlier_share(found) < inliers + kFoundInliers) return std::nullopt;
   return found;
 }
+
+}  // namespace
 
 double LaserOdometer::Step::way_m() const { return driven_m + kWayPerRad * turned_rad; }
 

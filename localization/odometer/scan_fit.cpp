@@ -107,6 +107,12 @@ PoseCovariance covariance_of(const std::array<Sums, kSectors>& by_sector, const 
 
 }  // namespace
 
+ScanFitter::ScanFitter(const SurfelMap& map, std::span<const LinePoint> points)
+    : map_{map},
+      points_{points},
+      lines_{static_cast<std::size_t>(
+          std::count_if(points.begin(), points.end(), [](const LinePoint& p) { return p.has_line(); }))} {}
+
 double ScanFitter::score(const Pose2& map_from_robot) const {
   const Placed placed{map_from_robot};
   double sum = 0.0;
@@ -144,12 +150,11 @@ void ScanFitter::match(const Pose2& map_from_robot) {
 double ScanFitter::inlier_share(const Pose2& map_from_robot) {
   match(map_from_robot);
   const Placed placed{map_from_robot};
-  const auto lines = std::count_if(points_.begin(), points_.end(), [](const LinePoint& p) { return p.has_line(); });
   const auto on = std::count_if(matches_.begin(), matches_.end(), [&](const Match& match) {
     return match.point->has_line() &&
            std::abs(placed.off_m(placed.turned(match.point->at), match.at, match.normal)) < kOnSurfelM;
   });
-  return lines == 0 ? 0.0 : static_cast<double>(on) / static_cast<double>(lines);
+  return lines_ == 0 ? 0.0 : static_cast<double>(on) / static_cast<double>(lines_);
 }
 
 Pose2 ScanFitter::registered(const Pose2& start, double start_off_m, const FitPrior& prior) {
@@ -181,8 +186,7 @@ Pose2 ScanFitter::registered(const Pose2& start, double start_off_m, const FitPr
 ScanFit ScanFitter::judged(const Pose2& map_from_robot) {
   ScanFit fit{.map_from_robot = map_from_robot};
   fit.inliers = inlier_share(map_from_robot);
-  fit.lines = static_cast<std::size_t>(
-      std::count_if(points_.begin(), points_.end(), [](const LinePoint& p) { return p.has_line(); }));
+  fit.lines = lines_;
   const Placed placed{map_from_robot};
   std::array<Sums, kSectors> by_sector{};  // so that what one person supports can be told
   Sums tangents;

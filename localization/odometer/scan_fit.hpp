@@ -29,7 +29,7 @@ struct ScanFit {
 /// One scan held against a map; both must live as long.
 class ScanFitter {
  public:
-  ScanFitter(const SurfelMap& map, std::span<const LinePoint> points) : map_{map}, points_{points} {}
+  ScanFitter(const SurfelMap& map, std::span<const LinePoint> points);
 
   /// How many points lie near surfels at a pose: mean of 1 / (1 + e² / (0.1 m)²) over some of the points on lines.
   [[nodiscard]] double score(const Pose2& map_from_robot) const;
@@ -52,6 +52,7 @@ class ScanFitter {
 
   const SurfelMap& map_;
   std::span<const LinePoint> points_;
+  std::size_t lines_;  // points on lines
   std::vector<Match> matches_;
   Pose2 matched_at_;
   bool has_matched_ = false;

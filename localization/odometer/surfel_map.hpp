@@ -40,10 +40,10 @@ class SurfelMap {
   void go_on(double way_m, double time_s);
   /// The points that lie on lines, as seen from a pose in the map's frame.
   void insert(std::span<const LinePoint> points, const Pose2& map_from_robot);
-  /// The surfel that is nearest along its normal, not farther than `reach_m`, whose normal is within 45° of the
+  /// The nearest surfel, not farther than `reach_m`, whose normal is within 45° of the
   /// point's, where that has one. `at` and `normal`: in the map's frame.
   [[nodiscard]] NearSurfel near(const Point2& at, const Eigen::Vector2f& normal, float reach_m) const;
-  /// It has stood for a second: whoever walks leaves only young ones.
+  /// It was seen first less than a second ago: whoever walks leaves only such ones.
   [[nodiscard]] bool is_young(const Surfel& surfel) const { return time_s_ - surfel.born_s < kYoungS; }
   /// Forgets what was inserted since then.
   void forget_since(double time_s);
