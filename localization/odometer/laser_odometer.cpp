@@ -85,10 +85,10 @@ Pose2 stretched(const Pose2& motion, double factor) {
 
 /// Far around the pose that the wheels tell: nothing where the scan fits no better elsewhere.
 std::optional<Pose2> searched(ScanFitter& fitter, const Pose2& around, double inliers) {
-  constexpr double kTurnsRad = 1.2;
   constexpr double kTurnRad = 0.05;
-  constexpr double kShiftsM = 0.9;
+  constexpr int kTurns = 24;  // to either side
   constexpr double kShiftM = 0.3;
+  constexpr int kShifts = 3;         // to either side
   constexpr double kPerUnit = 0.15;  // of score that a metre or radian costs
   Pose2 best = around;
   double best_score = fitter.score(around);
@@ -99,12 +99,12 @@ std::optional<Pose2> searched(ScanFitter& fitter, const Pose2& around, double in
     best_score = found;
     best = pose;
   };
-  for (double turn = -kTurnsRad; turn <= kTurnsRad; turn += kTurnRad)
-    look({around.x, around.y, wrapped_angle(around.theta + turn)});
+  for (int turn = -kTurns; turn <= kTurns; ++turn)
+    look({around.x, around.y, wrapped_angle(around.theta + turn * kTurnRad)});
   const Pose2 turned_best = best;
-  for (double x = -kShiftsM; x <= kShiftsM + 1e-9; x += kShiftM) {
-    for (double y = -kShiftsM; y <= kShiftsM + 1e-9; y += kShiftM)
-      look({turned_best.x + x, turned_best.y + y, turned_best.theta});
+  for (int x = -kShifts; x <= kShifts; ++x) {
+    for (int y = -kShifts; y <= kShifts; ++y)
+      look({turned_best.x + x * kShiftM, turned_best.y + y * kShiftM, turned_best.theta});
   }
   const Pose2 found = fitter.registered(best, 0.3, {best});
   if (fitter.inlier_share(found) < inliers + kFoundInliers) return std::nullopt;
