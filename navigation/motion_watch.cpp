@@ -104,7 +104,7 @@ void MotionWatch::judge(const ShownMotion& shown, double least_more) {
     contradictions_ = 0;
   else
     contradictions_ += is_clear ? kContradictions : 1;
-  if (contradicts_wheels()) doubt();
+  if (contradicts_wheels() || shows_neither) doubt();
   if (shown.as_told >= kShownAtLeast && more <= -least_more) looks_ahead_ = true;
 }
 

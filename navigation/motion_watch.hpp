@@ -2,7 +2,7 @@
 // Do the scans follow the wheels? Two scans some way apart are held against what the wheels tell of it. A laser that
 // looks another way than its mount says sees the way ahead where no beam is: until the scans have once shown a
 // translation that the wheels tell, nothing proves that it looks ahead. A turn proves nothing: turned round, it sees
-// the same turn.
+// the same turn. Two scans that have nothing in common put it in doubt again: the laser itself may have been turned.
 #pragma once
 
 #include <cstdint>

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/angle.hpp"
 #include "tests/support/scans/cast_scan.hpp"
 #include "tests/support/worlds/room_and_corridor.hpp"
 
@@ -144,6 +145,19 @@ TEST(MotionWatch, IsToBeShownAgainAfterWhateverMayHaveTurnedTheLaser) {
   robot.watch.forget_contradiction();
   EXPECT_FALSE(robot.watch.contradicts_wheels());
   EXPECT_FALSE(robot.watch.looks_ahead()) << "what has been contradicted";
+}
+
+TEST(MotionWatch, IsToBeShownAgainAfterTwoScansThatHaveNothingInCommon) {
+  for (const double turned_deg : {60.0, 90.0, -90.0, 180.0}) {
+    TurnedLaser robot;
+    robot.look();
+    robot.drive_until_it_looks_ahead(kCreepingMPerS);
+    robot.drive(0.4, 0.0, 0.6, [] { return false; });
+    ASSERT_TRUE(robot.watch.looks_ahead());
+    robot.turned_rad = radians(turned_deg);  // somebody has knocked against it while the robot turns on the spot
+    robot.drive(0.0, 0.8, 1.0, [&] { return !robot.watch.looks_ahead(); });
+    EXPECT_FALSE(robot.watch.looks_ahead()) << turned_deg;
+  }
 }
 
 TEST(MotionWatch, SaysOfEachWayWhetherTheWheelsCanBeLearnedFrom) {
