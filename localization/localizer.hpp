@@ -60,6 +60,9 @@ class Localizer {
   /// What speaks for the pose: share of all beams that came back which the map explains, [0, 1]. Ends where the map
   /// knows nothing are no support. Nothing without a return.
   [[nodiscard]] std::optional<double> fit_of_all() const;
+  /// Wheels and scans have carried the pose here from where it was surely right: beams that the map does not explain
+  /// meet what is new.
+  [[nodiscard]] bool is_carried() const;
 
   /// Errors of wheels and mount, as far as driving among surfaces has told; nothing where surfaces are not followed.
   [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;

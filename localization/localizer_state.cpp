@@ -121,6 +121,9 @@ motion::ScanInstant Localizer::State::witnessed(const Scan& scan, std::span<cons
     now.odometry = odometry.at(scan.time);
   }
   stood_m = seen.stood_m;
+  judgement.carry({.is_continued = covers_the_gap(now),
+                   .fits_before = !seen.is_lost && !seen.contradicts,
+                   .driven_m = seen.motion.position().norm()});
   counts.wheels_contradicted += seen.contradicts ? 1 : 0;
   if (last_scan && !seen.is_lost) wheel_lag.observe(*last_scan, scan.time, seen.by_laser.theta, odometry);
   if (const std::optional<double> lag_s = wheel_lag.lag_s()) odometry.set_lag(*lag_s);
@@ -295,7 +298,8 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
                      .believed = believed,
                      .state = before,
                      .passed = {seen.driven_m, seen.turned_rad, seen.passed_s},
-                     .hypotheses = hypotheses.report()});
+                     .hypotheses = hypotheses.report(),
+                     .fits = seen.fit >= params.fit.found_above});
   if (before == LocalizerState::kTracking) {
     stable_support.observe(judgement.belief().stable);
   } else {

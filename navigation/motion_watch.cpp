@@ -12,8 +12,8 @@ constexpr double kWayRad = 0.2;
 constexpr double kWayMostS = 6.0;
 constexpr double kCreepWayM = 0.1;    // from here on a robot that creeps is judged,
 constexpr double kCreepStepM = 0.03;  // again and again,
-constexpr double kCreepMPerS = 0.15;  // which is slower than that
-constexpr double kCreepRadPerS = 0.25;
+constexpr double kSlowMPerS = 0.15;   // which is slower than that
+constexpr double kSlowRadPerS = 0.25;
 constexpr double kSilenceS = 5.0;       // of a laser: it may have been taken off, and put on otherwise
 constexpr double kNothingToAskM = 1.0;  // then it is no worse than a laser in a corridor at any time
 constexpr int kFewestAsked = 15;
@@ -59,10 +59,10 @@ void MotionWatch::doubt() {
 bool MotionWatch::is_slow(const Moment& now) const {
   const Pose2 step = motion_between(last_->odom_from_robot, now.odom_from_robot);
   const double step_s = seconds(now.time - last_->time);
-  return step.position().norm() < kCreepMPerS * step_s && std::abs(step.theta) < kCreepRadPerS * step_s;
+  return step.position().norm() < kSlowMPerS * step_s && std::abs(step.theta) < kSlowRadPerS * step_s;
 }
 
-bool MotionWatch::observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch) {
+void MotionWatch::observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch) {
   const Moment now{scan.time, scan.robot_from_laser, odom_from_robot, epoch};
   bool creeps = false;
   if (goes_on(now)) {
@@ -75,29 +75,27 @@ bool MotionWatch::observe(const Scan& scan, const Pose2& odom_from_robot, std::u
   const bool slows_down = reference_ && creeps && !reference_->creeps;
   if (is_old || slows_down) skip();
   if (reference_) reference_->creeps = creeps;
-  const bool is_without_doubt = reference_ && compare(scan, odom_from_robot);
+  if (reference_) compare(scan, odom_from_robot);
   if (!reference_) reference_ = Reference{scan, odom_from_robot, creeps};
   if (unproven_m_ >= kNothingToAskM && contradictions_ == 0) looks_ahead_ = true;
   last_ = now;
-  return is_without_doubt;
 }
 
-bool MotionWatch::compare(const Scan& scan, const Pose2& odom_from_robot) {
+void MotionWatch::compare(const Scan& scan, const Pose2& odom_from_robot) {
   const Pose2 motion = motion_between(reference_->odom_from_robot, odom_from_robot);
   const bool creeps = reference_->creeps;
-  if (!is_a_way(motion, creeps ? std::max(kCreepWayM, judged_m_ + kCreepStepM) : kWayM)) return false;
+  if (!is_a_way(motion, creeps ? std::max(kCreepWayM, judged_m_ + kCreepStepM) : kWayM)) return;
   const ShownMotion shown = shown_motion(reference_->scan, scan, motion, creeps ? Likeness::creeping() : Likeness{});
-  const bool is_whole_way = is_a_way(motion, kWayM);
   judged_m_ = motion.position().norm();
-  if (is_whole_way) skip();
+  if (is_a_way(motion, kWayM)) skip();
   judge(shown, creeps ? kCreepMore : kMoreThanTold);
-  return is_whole_way && contradictions_ == 0;
 }
 
 void MotionWatch::judge(const ShownMotion& shown, double least_more) {
   if (shown.asked < kFewestAsked) return;
-  const double more = shown.otherwise - shown.as_told;
-  const bool shows_otherwise = shown.otherwise >= kShownAtLeast && more >= least_more;
+  const double otherwise = std::max(shown.otherwise, shown.askew);
+  const double more = otherwise - shown.as_told;
+  const bool shows_otherwise = otherwise >= kShownAtLeast && more >= least_more;
   const bool shows_neither = shown.asked >= kClearAsked && shown.as_told < kLittleAsTold;
   const bool is_clear = shown.asked >= kClearAsked && more >= kClearlyMore;
   if (!shows_otherwise && !shows_neither)
@@ -105,7 +103,7 @@ void MotionWatch::judge(const ShownMotion& shown, double least_more) {
   else
     contradictions_ += is_clear ? kContradictions : 1;
   if (contradicts_wheels() || shows_neither) doubt();
-  if (shown.as_told >= kShownAtLeast && more <= -least_more) looks_ahead_ = true;
+  if (shown.as_told >= kShownAtLeast && shown.as_told >= shown.otherwise + least_more) looks_ahead_ = true;
 }
 
 }  // namespace deltamap::navigation

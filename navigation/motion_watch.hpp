@@ -15,9 +15,8 @@ namespace deltamap::navigation {
 
 class MotionWatch {
  public:
-  /// True where the scan ends a way on which nothing contradicts the wheels. `epoch`: of the odometry; poses of two
-  /// cannot be compared.
-  bool observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch);
+  /// `epoch`: of the odometry; poses of two cannot be compared.
+  void observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch);
   /// This scan tells nothing, or it is not known where the wheels were.
   void skip();
 
@@ -46,7 +45,7 @@ class MotionWatch {
   void doubt();
   void judge(const ShownMotion& shown, double least_more);
   [[nodiscard]] bool is_slow(const Moment& now) const;
-  [[nodiscard]] bool compare(const Scan& scan, const Pose2& odom_from_robot);
+  void compare(const Scan& scan, const Pose2& odom_from_robot);
 
   std::optional<Reference> reference_;  // what later scans are held against
   double judged_m_ = 0.0;               // of the way from there

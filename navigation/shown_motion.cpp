@@ -21,6 +21,7 @@ constexpr std::array<double, 5> kAsTold{1.0, 0.9, 1.1, 0.75, 1.25};
 constexpr int kTurnSteps = 3;  // to each side
 constexpr std::array<double, 4> kOtherwise{0.0, 0.25, -0.5, -1.0};
 constexpr std::array<double, 3> kTurnedOnMountRad{radians(90.0), radians(180.0), radians(-90.0)};
+constexpr std::array<double, 4> kAskewOnMountRad{radians(45.0), radians(135.0), radians(-135.0), radians(-45.0)};
 
 struct SeenEnd {
   Point2 in_laser;
@@ -137,6 +138,8 @@ ShownMotion shown_motion(const Scan& before, const Scan& after, const Pose2& rob
   const auto otherwise = [&](const Pose2& moved) { shown.otherwise = std::max(shown.otherwise, share_seen(moved)); };
   for (const double share : kOtherwise) otherwise(ends.of_laser(share_of(robot_before_from_after, share)));
   for (const double turned_rad : kTurnedOnMountRad) otherwise(ends.of_laser(robot_before_from_after, turned_rad));
+  for (const double turned_rad : kAskewOnMountRad)
+    shown.askew = std::max(shown.askew, share_seen(ends.of_laser(robot_before_from_after, turned_rad)));
   return shown;
 }
 

@@ -22,6 +22,7 @@ struct ShownMotion {
   double as_told = 0.0;    ///< share of these that are, for the best of 0.75 to 1.25 times the motion; [0, 1]
   double otherwise = 0.0;  ///< share of these that show where a standing robot, one that moves backwards, or one whose
                            ///< laser is turned on its mount by 90° or 180° would see them: the best of these; [0, 1]
+  double askew = 0.0;  ///< the same of a laser that is turned by 45° or 135°; after a decimetre this is like as_told
 };
 
 /// `robot_before_from_after`: the motion that the wheels tell from one scan to the other.

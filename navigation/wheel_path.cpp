@@ -6,7 +6,7 @@
 namespace deltamap::navigation {
 namespace {
 
-constexpr double kKeptS = 2.0;       // a scan of 0.5° at 9600 baud is 0.8 s old when it has come
+constexpr double kPathKeptS = 2.0;   // a scan of 0.5° at 9600 baud is 0.8 s old when it has come
 constexpr double kAheadMostS = 0.5;  // past the newest packet the link is gone
 
 }  // namespace
@@ -15,7 +15,7 @@ void WheelPath::observe(const Odometry& odometry) {
   const bool follows = !path_.empty() && path_.back().epoch == odometry.epoch && path_.back().time < odometry.time;
   if (!follows) path_.clear();
   path_.push_back(odometry);
-  while (seconds(odometry.time - path_.front().time) > kKeptS) path_.pop_front();
+  while (seconds(odometry.time - path_.front().time) > kPathKeptS) path_.pop_front();
 }
 
 std::optional<Pose2> WheelPath::odom_from_robot(Timestamp time) const {

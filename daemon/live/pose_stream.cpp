@@ -8,10 +8,10 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr int kProtocol = 1;
+constexpr int kPoseProtocol = 1;
 
 std::string greeting() {
-  const nlohmann::ordered_json hello{{"type", "hello"}, {"protocol", kProtocol}, {"version", version_text()}};
+  const nlohmann::ordered_json hello{{"type", "hello"}, {"protocol", kPoseProtocol}, {"version", version_text()}};
   return hello.dump();
 }
 

@@ -59,6 +59,8 @@ class LocalizationStep {
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
   /// As Localizer::fit_of_all().
   [[nodiscard]] std::optional<double> fit_of_all() const { return localizer_.fit_of_all(); }
+  /// As Localizer::is_carried().
+  [[nodiscard]] bool is_carried() const { return localizer_.is_carried(); }
   /// What is known of wheels and mount, without what was learned on the last way: whether scans and wheels contradict
   /// each other there is not known yet.
   [[nodiscard]] const std::optional<localization::motion::DriveCalibration>& calibration() const {

@@ -99,6 +99,7 @@ struct VirtualDaemon::Process {
       const std::string line = fit_watch.observe(tracked, {seen.fit, run->localization().fit_of_all()}).text;
       if (!line.empty()) owner.log_.push_back(line);
       seen.start_fits = fit_watch.start_fits();
+      seen.is_carried = run->localization().is_carried();
       seen.transients = run->store_scan().transients().get();
     }
     const daemon::PilotWord word = pilot.observe(tracked, seen);

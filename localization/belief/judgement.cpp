@@ -46,6 +46,7 @@ void Judgement::start(double pose_right) {
   since_check_.reset();
   is_checked_ = false;
   fixed_by_surfaces_ = false;
+  carried_.end();
 }
 
 Belief Judgement::belief() const {
@@ -79,6 +80,8 @@ void Judgement::observe(const View& view) {
   const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed);
   judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses, continuity_.may_have_been_kidnapped()));
   is_checked_ = true;
+  const bool is_sure = view.state == LocalizerState::kTracking && judge_.trust() >= kSurelyRight;
+  if (is_sure && view.fits) carried_.start_from_here();
   earn(beams, view);
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "localization/belief/beam_check.hpp"
+#include "localization/belief/carried_pose.hpp"
 #include "localization/belief/continuity.hpp"
 #include "localization/belief/pose_verdict.hpp"
 #include "localization/belief/stability.hpp"
@@ -31,6 +32,9 @@ class Judgement {
   /// Begins anew at a pose that is right with this probability.
   void start(double pose_right);
 
+  /// Every scan, first of all: has the robot come here from the last one as its wheels tell?
+  void carry(const CarriedPose::Step& step) { carried_.observe(step); }
+
   /// Every scan, before it is observed: was the robot carried? Then the pose is as right as wrong.
   void follow(const FollowedScan& scan, bool is_tracking);
 
@@ -42,6 +46,7 @@ class Judgement {
     LocalizerState state = LocalizerState::kGlobal;
     PoseJudge::Passed passed;  ///< since the last scan
     const hypotheses::HypothesisReport& hypotheses;
+    bool fits = false;  ///< the map explains most of what is seen
   };
   /// Not every scan is held against the map: between two that are, the belief stays as it is (Belief::is_checked),
   /// unless follow() tells of a kidnapping.
@@ -51,9 +56,13 @@ class Judgement {
   /// told of it lately (PoseJudge::limit). Holds until the next call or start().
   void fix_by_surfaces(bool fixed) { fixed_by_surfaces_ = fixed; }
 
-  /// Surfaces fix the pose, and it has been followed without a break.
-  [[nodiscard]] bool is_fixed() const { return fixed_by_surfaces_ && continuity_.is_unbroken(); }
-  /// Surfaces fix the pose, and no other hypothesis speaks against it: to be surely right it lacks proven tiles at
+  /// Wheels and scans have carried it here from where it was surely right, and it has been followed without a break.
+  [[nodiscard]] bool is_carried() const { return carried_.is_carried() && continuity_.is_unbroken(); }
+  /// Surfaces fix the pose, or it is carried, and it has been followed without a break.
+  [[nodiscard]] bool is_fixed() const {
+    return (fixed_by_surfaces_ || carried_.is_carried()) && continuity_.is_unbroken();
+  }
+  /// It is fixed, and no other hypothesis speaks against it: to be surely right it lacks proven tiles at
   /// most.
   [[nodiscard]] bool is_held() const { return is_fixed() && judge_.is_surely_right(1.0 - judge_.belief().other_share); }
 
@@ -82,6 +91,7 @@ class Judgement {
   std::optional<PoseJudge::Passed> since_check_;  ///< none: nothing checked yet
   bool is_checked_ = false;                       ///< Belief::is_checked
   bool fixed_by_surfaces_ = false;
+  CarriedPose carried_;
 };
 
 }  // namespace deltamap::localization::belief

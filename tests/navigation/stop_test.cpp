@@ -47,7 +47,7 @@ class Drive {
   }
   PoseNow pose() {
     estimate->time = now;
-    return {*estimate, fit, start_fits};
+    return {*estimate, fit, start_fits, is_carried};
   }
   AllowedMotion run_for(double s) {
     AllowedMotion motion;
@@ -73,6 +73,7 @@ class Drive {
   std::optional<Estimate> estimate;  ///< nothing: the pilot asks for none
   std::optional<double> fit = 0.9;
   bool start_fits = true;
+  bool is_carried = false;
   bool drives_on = false;  ///< by its wheels
   bool flickers = false;   ///< its scans have noise
   Timestamp now = kStart;
@@ -337,6 +338,21 @@ TEST(StopReasons, WarningsOfTheLaserAreNone) {
   Drive drive;
   drive.scan.severity = 2;  // the front window is dirty
   EXPECT_EQ(drive.run_for(1.0).stop, StopReason::kNone);
+}
+
+TEST(StopReasons, AreNoneForAMisfitWhereWheelsAndScansHaveCarriedThePoseOn) {
+  Drive drive;
+  drive.estimate = Estimate{};
+  drive.estimate->state = LocalizerState::kTracking;
+  drive.is_carried = true;
+  drive.fit = 0.05;
+  EXPECT_EQ(drive.run_for(10.0).stop, StopReason::kNone);
+  drive.is_carried = false;
+  EXPECT_EQ(drive.run_for(3.0).stop, StopReason::kPoseUnfit);
+  drive.is_carried = true;
+  EXPECT_EQ(drive.run_for(3.0).stop, StopReason::kPoseUnfit) << "once it is unfit, a fit alone ends it";
+  drive.fit = 0.9;
+  EXPECT_EQ(drive.run_for(3.0).stop, StopReason::kNone);
 }
 
 }  // namespace
