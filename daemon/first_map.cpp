@@ -53,27 +53,23 @@ void require_map_named(const Settings& settings, const std::string& file) {
 }
 
 FirstMap read_first_map(const std::filesystem::path& file, const MemoryLimit& limit) {
-  const GridFileFacts facts = grid_file_facts(file);
+  const GridGeometry geometry = grid_file_geometry(file);
   std::vector<std::string> warnings;
-  const auto warn = [&](const std::string& what) { warnings.push_back(file.string() + ": " + what); };
-  if (std::string slow = judged_size(file, facts.geometry, limit); !slow.empty()) warnings.push_back(std::move(slow));
-  if (facts.geometry.resolution_m > kCoarsest_m) {
-    warn("cells of " + shortest_text(facts.geometry.resolution_m) + " m are coarse: 0.05 to 0.1 m are usual");
+  if (std::string slow = judged_size(file, geometry, limit); !slow.empty()) warnings.push_back(std::move(slow));
+  if (geometry.resolution_m > kCoarsest_m) {
+    warnings.push_back(file.string() + ": cells of " + shortest_text(geometry.resolution_m) +
+                       " m are coarse: 0.05 to 0.1 m are usual");
   }
-  const bool is_swapped = facts.occupied_threshold < facts.free_threshold;
-  if (is_swapped) {
-    warn("'occupied_thresh' (" + shortest_text(facts.occupied_threshold) + ") lies below 'free_thresh' (" +
-         shortest_text(facts.free_threshold) + "): are they swapped?");
-  }
-  FirstMap map{read_grid(file), std::move(warnings)};
+  GridWithNotes map = read_grid_with_notes(file);
   if (count_of(map.grid, CellState::kFree) == 0) {
-    throw std::runtime_error(file.string() + ": has no free cell, nowhere could a robot be" +
-                             (is_swapped ? ": are 'occupied_thresh' and 'free_thresh' swapped?" : ""));
+    std::string why = file.string() + ": has no free cell, nowhere could a robot be";
+    for (const std::string& note : map.notes) why += "; " + note.substr(file.string().size() + 2);
+    throw std::runtime_error(why);
   }
-  if (count_of(map.grid, CellState::kOccupied) == 0) {
-    map.warnings.push_back(file.string() + ": has no occupied cell, no beam can tell where the robot is");
-  }
-  return map;
+  warnings.insert(warnings.end(), map.notes.begin(), map.notes.end());
+  if (count_of(map.grid, CellState::kOccupied) == 0)
+    warnings.push_back(file.string() + ": has no occupied cell, no beam can tell where the robot is");
+  return {std::move(map.grid), std::move(warnings)};
 }
 
 std::string why_not_as_service(const std::filesystem::path& file, const UnitMemory& unit) {

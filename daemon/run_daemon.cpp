@@ -146,7 +146,7 @@ OccupancyGrid first_map(const Settings& settings, const CommandLine& line, Conso
   require_map_named(settings, line.config);
   constexpr std::uint64_t kReadInAMoment = 20'000'000;  // cells: within half a second
   try {
-    if (grid_file_facts(settings.map.file).geometry.cell_count() > kReadInAMoment)
+    if (grid_file_geometry(settings.map.file).cell_count() > kReadInAMoment)
       console.log(LogLevel::kInfo, "reads the map: " + settings.map.file);
     FirstMap map = read_first_map(settings.map.file, memory_limit());
     for (const std::string& warning : map.warnings) console.log(LogLevel::kWarn, warning);
@@ -225,7 +225,7 @@ void require_plain_file(const std::filesystem::path& settings) {
 void require_a_start(const Settings& read, const std::string& config) {
   require_map_named(read, config);
   try {
-    require_pose_on(grid_file_facts(read.map.file).geometry, read);
+    require_pose_on(grid_file_geometry(read.map.file), read);
     require_newest_named(read.map);
   } catch (const SettingsError&) {
     throw;

@@ -8,13 +8,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/files/grid_file.hpp"
 #include "daemon/control/calibration_json.hpp"
 #include "daemon/settings/settings.hpp"
 #include "localization/localizer.hpp"
 #include "surveying/calibration/motion_calibration.hpp"
 #include "tool/recorded_messages.hpp"
 #include "tool/subcommands.hpp"
+#include "tool/told_grid.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -61,7 +61,7 @@ bool is_sure(const Estimate& estimate) {
 Drive driven(const CalibrateOptions& options, const daemon::Settings& settings) {
   std::optional<localization::particles::InitialPose> start;
   if (settings.initial_pose) start = localization::particles::InitialPose{*settings.initial_pose};
-  const auto map = std::make_shared<const OccupancyGrid>(read_grid(options.map));
+  const auto map = std::make_shared<const OccupancyGrid>(told_grid(options.map));
   localization::Localizer as_set{settings.localizer, map, start, settings.seed};
   localization::LocalizerParams params = settings.localizer;
   params.follow_surfaces = false;  // wheels as they count, not as they have been corrected

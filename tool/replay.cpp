@@ -41,6 +41,7 @@ void run_replay(ReplayOptions& options) {
   if (options.seed) overrides.push_back("seed=" + std::to_string(*options.seed));
   options.job.settings = daemon::read_settings(options.config, overrides);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = true; });
+  options.job.warn = [](const std::string& line) { std::cerr << "deltamap: warning: " << line << '\n'; };
   daemon::RunReport report;
   {
     constexpr std::uint64_t kSteps = 1000;

@@ -8,10 +8,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "core/files/grid_file.hpp"
 #include "simulation/score/change_score.hpp"
 #include "simulation/score/trajectory_score.hpp"
 #include "tool/subcommands.hpp"
+#include "tool/told_grid.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -111,7 +111,7 @@ void run_score(const ScoreOptions& options) {
   params.range_m = options.range_m > 0.0 ? options.range_m : scenario.laser.max_range_m;
   params.face_beams = options.face_beams;
   const auto changes =
-      score::change_score(scenario, truth, read_grid(options.start_map), read_grid(options.map), params);
+      score::change_score(scenario, truth, told_grid(options.start_map), told_grid(options.map), params);
   if (options.json) {
     std::cout << json_of_score(trajectory, changes, truth.poses.front().time).dump(2) << '\n';
   } else {

@@ -2,12 +2,9 @@
 #include "core/files/grid_file.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <cmath>
+#include <memory>
+#include <numbers>
 #include <span>
 #include <stdexcept>
 #include <system_error>
@@ -15,141 +12,157 @@
 #include <vector>
 
 #include "core/files/grid_description.hpp"
+#include "core/files/grid_shades.hpp"
 #include "core/files/replace_file.hpp"
 #include "core/files/shortest_text.hpp"
 #include "core/files/text_of_file.hpp"
+#include "core/geometry/angle.hpp"
 #include "core/grid/tiled.hpp"
+#include "core/pictures/picture_reader.hpp"
 
 namespace deltamap {
 namespace {
 
 constexpr int kTogether = Tiled<CellState>::kSide;  // pixels
-constexpr int kMaxSide = 32767;                     // cells; 16-bit indices suffice everywhere
+constexpr double kNoTurn_rad = 1e-6;
+constexpr double kQuarterTurn_rad = 2e-5;  // as 4.7124 is from three quarters: 2 mm at 100 m
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
   throw std::runtime_error(file.string() + ": " + why);
 }
 
-std::ifstream open_file(const std::filesystem::path& file) {
-  std::error_code told_below;
-  if (std::filesystem::is_directory(file, told_below)) refuse(file, "is a directory");
-  if (std::filesystem::is_other(file, told_below)) refuse(file, "is no plain file");  // a pipe may say nothing for ever
-  std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(file, std::generic_category().message(errno));
-  return in;
+std::string of_line(int line) { return "line " + std::to_string(line) + ": "; }
+
+/// To a nanometre: an origin that is computed reads as one that was written.
+Point2 tidied(const Point2& point) {
+  const auto rounded = [](double metres) { return std::round(metres * 1e9) / 1e9 + 0.0; };
+  return {rounded(point.x()), rounded(point.y())};
 }
 
-/// A binary PGM, read from its beginning: the header, numbers separated by white space and comments, then rows of
-/// pixels.
-class PgmReader {
+/// How a picture lies in the grid of its map: turned by quarters about its lower left corner, which is at the origin of
+/// the description.
+class Placement {
  public:
-  explicit PgmReader(const std::filesystem::path& file) : in_{open_file(file)}, file_{file} {
-    if (in_.get() != 'P' || in_.get() != '5') refuse(file, "byte 0: not a binary PGM (P5)");
+  Placement(const GridDescription& keys, const std::filesystem::path& file, int width, int height)
+      : width_{width}, height_{height} {
+    quarters_ = quarters_in(keys.yaw_rad);
+    if (quarters_ < 0) refuse_turn(keys, file);
+    const bool is_across = quarters_ % 2 == 1;
+    geometry_ = {is_across ? height : width, is_across ? width : height, keys.resolution_m, keys.origin};
+    if (quarters_ != 0) geometry_.origin = tidied(lowest_corner(keys, quarters_ * std::numbers::pi / 2.0));
   }
-  int next_number(int most) {
-    skip_space();
-    const std::size_t start = at_;
-    long value = 0;
-    while (std::isdigit(in_.peek()) != 0 && value <= most) {
-      value = value * 10 + (in_.get() - '0');
-      ++at_;
+
+  [[nodiscard]] const GridGeometry& geometry() const { return geometry_; }
+  /// Where the cell of a pixel lies; `pixel` counts from the picture's lower left corner.
+  [[nodiscard]] Cell cell_of(Cell pixel) const {
+    switch (quarters_) {
+      case 1:
+        return {height_ - 1 - pixel.row, pixel.column};
+      case 2:
+        return {width_ - 1 - pixel.column, height_ - 1 - pixel.row};
+      case 3:
+        return {pixel.row, width_ - 1 - pixel.column};
+      default:
+        return pixel;
     }
-    if (at_ == start || value < 1 || value > most) {
-      refuse(file_, "byte " + std::to_string(start) + ": expected a number from 1 to " + std::to_string(most));
-    }
-    return static_cast<int>(value);
-  }
-  /// Pixels begin after exactly one white space; refuses a file that has too few.
-  void begin_pixels(int width, int height) {
-    (void)in_.get();
-    const auto needed = at_ + 1 + static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    const auto size = static_cast<std::size_t>(std::filesystem::file_size(file_));
-    if (size >= needed) return;
-    refuse(file_, "byte " + std::to_string(size) + ": cut short, " + std::to_string(width) + " x " +
-                      std::to_string(height) + " cells need " + std::to_string(needed) + " bytes");
-  }
-  void read_row(std::string& row) {
-    if (!in_.read(row.data(), static_cast<std::streamsize>(row.size()))) refuse(file_, "cannot be read to its end");
   }
 
  private:
-  void skip_space() {
-    while (in_.peek() == '#' || std::isspace(in_.peek()) != 0) {
-      const bool is_comment = in_.peek() == '#';
-      do {
-        (void)in_.get();
-        ++at_;
-      } while (is_comment && in_.peek() != '\n' && in_.peek() != std::char_traits<char>::eof());
-    }
+  /// Counterclockwise, 0 to 3; -1 for other turns.
+  static int quarters_in(double yaw_rad) {
+    constexpr double kQuarter_rad = std::numbers::pi / 2.0;
+    const double turns = std::round(std::remainder(yaw_rad, 4.0 * kQuarter_rad) / kQuarter_rad);
+    const int quarters = (static_cast<int>(turns) + 4) % 4;
+    const double off_rad = std::abs(std::remainder(yaw_rad - turns * kQuarter_rad, 4.0 * kQuarter_rad));
+    const bool is_unturned = yaw_rad > -kQuarter_rad && yaw_rad < kQuarter_rad && quarters == 0;
+    return off_rad < (is_unturned ? kNoTurn_rad : kQuarterTurn_rad) ? quarters : -1;
   }
-  std::ifstream in_;
-  const std::filesystem::path& file_;
-  std::size_t at_ = 2;
+  /// Lower left corner of the smallest rectangle that holds the turned picture.
+  [[nodiscard]] Point2 lowest_corner(const GridDescription& keys, double yaw_rad) const {
+    const Pose2 turned{keys.origin.x(), keys.origin.y(), yaw_rad};
+    const double across_m = width_ * keys.resolution_m;
+    const double up_m = height_ * keys.resolution_m;
+    Point2 lowest = keys.origin;
+    for (const Point2& corner : {Point2{across_m, 0.0}, Point2{0.0, up_m}, Point2{across_m, up_m}})
+      lowest = lowest.cwiseMin(turned * corner);
+    return lowest;
+  }
+  [[noreturn]] void refuse_turn(const GridDescription& keys, const std::filesystem::path& file) const {
+    const auto rounded = [](double value) { return shortest_text(std::round(value * 1e4) / 1e4); };
+    const Point2 origin = lowest_corner(keys, keys.yaw_rad);
+    refuse(file, of_line(keys.lines.origin) + "a turned origin (yaw " + shortest_text(keys.yaw_rad) +
+                     ") is read for quarter turns alone: turn the picture by " + rounded(degrees(keys.yaw_rad)) +
+                     " degrees counterclockwise onto a canvas that holds it whole, its corners unknown (205), and set "
+                     "'origin: [" +
+                     rounded(origin.x()) + ", " + rounded(origin.y()) + ", 0]'");
+  }
+
+  int width_;
+  int height_;
+  int quarters_ = 0;
+  GridGeometry geometry_;
 };
 
-CellState state_of(double darkness, const GridDescription& keys) {
-  if (darkness > keys.occupied_threshold) return CellState::kOccupied;
-  return darkness < keys.free_threshold ? CellState::kFree : CellState::kUnknown;
-}
-
-using CellStates = std::array<CellState, 256>;
-
-CellStates cell_states(int brightest, const GridDescription& keys) {
-  CellStates states{};
-  for (int shade = 0; shade < 256; ++shade) {
-    const double light = static_cast<double>(std::min(shade, brightest)) / brightest;
-    states[static_cast<std::size_t>(shade)] = state_of(keys.negate ? light : 1.0 - light, keys);
-  }
-  return states;
-}
-
-bool is_of_one_shade(std::string_view pixels) {
-  return std::memcmp(pixels.data(), pixels.data() + 1, pixels.size() - 1) == 0;
+std::unique_ptr<PictureReader> picture_of(const GridDescription& keys, const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(keys.picture, error))
+    refuse(file, of_line(keys.lines.image) + "picture " + keys.picture.string() + ": " +
+                     (error ? error : std::make_error_code(std::errc::no_such_file_or_directory)).message());
+  return open_picture(keys.picture);
 }
 
 /// Both files of a map, read from the beginning.
 class MapFiles {
  public:
   explicit MapFiles(const std::filesystem::path& yaml_file)
-      : keys_{read_grid_description(yaml_file)},
-        image_{yaml_file.parent_path() / keys_.image},  // an absolute image path stands for itself
-        pgm_{image_} {
-    const int width = pgm_.next_number(kMaxSide);
-    const int height = pgm_.next_number(kMaxSide);
-    brightest_ = pgm_.next_number(255);
-    pgm_.begin_pixels(width, height);
-    geometry_ = {width, height, keys_.resolution_m, keys_.origin};
-  }
-  MapFiles(const MapFiles&) = delete;
-  MapFiles& operator=(const MapFiles&) = delete;
+      : file_{yaml_file},
+        keys_{read_grid_description(yaml_file)},
+        picture_{picture_of(keys_, yaml_file)},
+        placement_{keys_, yaml_file, picture_->width(), picture_->height()} {}
 
   [[nodiscard]] const GridDescription& keys() const { return keys_; }
-  [[nodiscard]] const GridGeometry& geometry() const { return geometry_; }
-  [[nodiscard]] CellStates states() const { return cell_states(brightest_, keys_); }
+  [[nodiscard]] const Placement& placement() const { return placement_; }
+  [[nodiscard]] const GridGeometry& geometry() const { return placement_.geometry(); }
+  [[nodiscard]] CellState state_of(Shade shade) const { return states_[shade]; }
+  /// What was told of the files so far; of their shades once they have been visited.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Once: `visit(Cell first, std::string_view shades)` for the pieces of rows in which something is known, from the
-  /// top. A piece lies in one column of tiles.
+  /// Once: `visit(Cell first, std::span<const Shade> shades)` for the pieces of rows in which something is known, from
+  /// the top; cells are those of the picture. A piece lies in one column of the picture's tiles.
   template <typename Visit>
   void visit_shown(Visit&& visit) {
-    const CellStates states = this->states();
-    std::string shades(static_cast<std::size_t>(geometry_.width), '\0');
-    for (int row = geometry_.height - 1; row >= 0; --row) {
-      pgm_.read_row(shades);
-      for (int column = 0; column < geometry_.width; column += kTogether) {
-        const std::string_view piece = std::string_view{shades}.substr(static_cast<std::size_t>(column), kTogether);
-        const CellState first = states[static_cast<unsigned char>(piece.front())];
-        if (first == CellState::kUnknown && is_of_one_shade(piece)) continue;  // most of a large map
-        visit({column, row}, piece);
+    learn_shades();
+    std::vector<Shade> row(static_cast<std::size_t>(picture_->width()));
+    for (int below = picture_->height() - 1; below >= 0; --below) {
+      picture_->read_row(row);
+      for (int column = 0; column < picture_->width(); column += kTogether) {
+        const std::span<const Shade> left = std::span{row}.subspan(static_cast<std::size_t>(column));
+        const std::span<const Shade> piece = left.first(std::min<std::size_t>(left.size(), kTogether));
+        const bool is_unknown = state_of(piece.front()) == CellState::kUnknown;
+        if (is_unknown && std::equal(piece.begin() + 1, piece.end(), piece.begin())) continue;  // most of a large map
+        visit({column, below}, piece);
       }
     }
   }
 
  private:
+  /// Reads the picture once before its cells: what a shade means depends on which others there are.
+  void learn_shades() {
+    const auto before = open_picture(keys_.picture);
+    const ShadeCensus census = census_of(*before);
+    states_ = states_of(census, keys_);
+    notes_ = keys_.notes;
+    const std::vector<std::string> of_picture = before->notes();
+    notes_.insert(notes_.end(), of_picture.begin(), of_picture.end());
+    for (const std::string& doubt : doubts_of(census, keys_)) notes_.push_back(file_.string() + ": " + doubt);
+  }
+
+  std::filesystem::path file_;
   GridDescription keys_;
-  std::filesystem::path image_;
-  PgmReader pgm_;
-  int brightest_ = 255;
-  GridGeometry geometry_;
+  std::unique_ptr<PictureReader> picture_;
+  Placement placement_;
+  std::vector<CellState> states_;
+  std::vector<std::string> notes_;
 };
 
 char shade_of(CellState state) {
@@ -201,7 +214,7 @@ std::filesystem::path picture_named_in(const std::filesystem::path& yaml_file) {
   std::error_code error;
   if (std::filesystem::is_regular_file(yaml_file, error) && std::filesystem::file_size(yaml_file, error) <= kLargest) {
     try {
-      return yaml_file.parent_path() / read_grid_description(yaml_file).image;
+      return read_grid_description(yaml_file).picture;
     } catch (const std::runtime_error&) {  // whoever reads the map says why
     }
   }
@@ -222,40 +235,35 @@ std::string pgm_of(const OccupancyGrid& grid) {
   return bytes;
 }
 
-bool is_carmen_map(const std::filesystem::path& file, std::string_view first_bytes) {
-  constexpr std::size_t kLongestHeader = 4096;  // lines of comment come before the magic word
-  if (first_bytes.starts_with("\x1F\x8B")) {
-    return file.extension() == ".map" || file.stem().extension() == ".map";  // of X.map and X.map.gz
-  }
-  return first_bytes.substr(0, kLongestHeader).find("CARMENMAPFILE") != std::string_view::npos;
-}
-
-OccupancyGrid read_grid(const std::filesystem::path& yaml_file) {
+GridWithNotes read_grid_with_notes(const std::filesystem::path& yaml_file) {
   MapFiles files{yaml_file};
-  const CellStates states = files.states();
   OccupancyGrid grid{files.geometry()};
-  files.visit_shown([&](Cell first, std::string_view shades) {
-    for (int i = 0; i < static_cast<int>(shades.size()); ++i) {
-      grid.set({first.column + i, first.row}, states[static_cast<unsigned char>(shades[static_cast<std::size_t>(i)])]);
+  files.visit_shown([&](Cell first, std::span<const Shade> shades) {
+    for (std::size_t i = 0; i < shades.size(); ++i) {
+      const Cell pixel{first.column + static_cast<int>(i), first.row};
+      grid.set(files.placement().cell_of(pixel), files.state_of(shades[i]));
     }
   });
-  return grid;
+  return {std::move(grid), files.notes()};
 }
 
-GridFileFacts grid_file_facts(const std::filesystem::path& yaml_file) {
-  const MapFiles files{yaml_file};
-  return {files.geometry(), files.keys().occupied_threshold, files.keys().free_threshold};
-}
+OccupancyGrid read_grid(const std::filesystem::path& yaml_file) { return read_grid_with_notes(yaml_file).grid; }
+
+GridGeometry grid_file_geometry(const std::filesystem::path& yaml_file) { return MapFiles{yaml_file}.geometry(); }
 
 std::uint64_t shown_cells(const std::filesystem::path& yaml_file) {
   MapFiles files{yaml_file};
-  std::uint64_t tiles = 0;
-  std::vector<int> last_row((static_cast<std::size_t>(files.geometry().width) + kTogether - 1) / kTogether, -1);
-  files.visit_shown([&](Cell first, std::string_view) {
-    int& row = last_row[static_cast<std::size_t>(first.column / kTogether)];
-    const int of_tiles = first.row / kTogether;
-    if (std::exchange(row, of_tiles) != of_tiles) ++tiles;
+  const auto tiles_along = [](int cells) { return (static_cast<std::size_t>(cells) + kTogether - 1) / kTogether; };
+  const std::size_t across = tiles_along(files.geometry().width);
+  std::vector<bool> is_shown(across * tiles_along(files.geometry().height));
+  files.visit_shown([&](Cell first, std::span<const Shade> shades) {
+    for (const int column : {first.column, first.column + static_cast<int>(shades.size()) - 1}) {
+      const Cell cell = files.placement().cell_of({column, first.row});
+      is_shown[static_cast<std::size_t>(cell.row / kTogether) * across +
+               static_cast<std::size_t>(cell.column / kTogether)] = true;
+    }
   });
+  const auto tiles = static_cast<std::uint64_t>(std::count(is_shown.begin(), is_shown.end(), true));
   return tiles * kTogether * kTogether;
 }
 

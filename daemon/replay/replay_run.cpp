@@ -218,7 +218,12 @@ RunReport Replay::finish(const std::filesystem::path& out) {
 RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   const auto began = std::chrono::steady_clock::now();
   const double began_cpu_s = process_cpu_s();
-  auto given = std::make_shared<const OccupancyGrid>(read_grid(job.map));
+  GridWithNotes read = read_grid_with_notes(job.map);
+  const auto warn = [&](const std::string& line) {
+    if (job.warn) job.warn(line);
+  };
+  for (const std::string& note : read.notes) warn(note);
+  auto given = std::make_shared<const OccupancyGrid>(std::move(read.grid));
   require_map_elsewhere(job.map, job.out);
   const RecordedRun recorded = recorded_run(job);
   const ReplayStart begun = replay_start(recorded, job, std::move(given));

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <string>
 
 #include "core/messages.hpp"
 #include "daemon/outputs/change_note.hpp"
@@ -43,6 +44,7 @@ struct ReplayJob {
   double to_s = std::numeric_limits<double>::infinity();
   double map_delay_s = 1.0;  ///< recorded time from the end of a Δ-phase until its revision is taken, without a journal
   ReplayWatch watch{};
+  std::function<void(const std::string&)> warn{};  ///< told what a person should know of map and pose, a line each
 };
 
 /// Called now and then with the share that is done, 0 to 1; answers whether to go on.

@@ -213,7 +213,7 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   add_robot(settings.robot, keys);
   add_laser(settings.laser, settings.localizer.range_deviation_m, keys);
   keys.push_back(not_for_results(
-      with_symbol(text_key("map.file", settings.map.file, "first map: map_server YAML with its PGM"), "M_0")));
+      with_symbol(text_key("map.file", settings.map.file, "first map: map_server YAML with its PGM or PNG"), "M_0")));
   keys.push_back(not_for_results(with_symbol(
       text_key("map.store", settings.map.store, "SQLite file of all map revisions; empty: they are not kept"), "M_k")));
   keys.push_back(not_for_results(

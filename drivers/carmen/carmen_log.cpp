@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/files/grid_file.hpp"
+#include "core/files/foreign_file.hpp"
 
 namespace deltamap::drivers::carmen {
 namespace {
@@ -237,12 +237,7 @@ CarmenLog::CarmenLog(std::filesystem::path file, const CarmenClock& clock) : fil
   in_.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in_.gcount()));
   if (head.empty()) refuse_file(file_, "line 1: the file is empty");
-  if (is_carmen_map(file_, head)) refuse_file(file_, "is a CARMEN map, not a log");
-  if (head.starts_with(std::string("\xFD"
-                                   "7zXZ\0",
-                                   6)))
-    refuse_file(file_, "is xz-compressed; unpack it first (xz -dk)");
-  if (head.starts_with("\x1F\x8B")) refuse_file(file_, "is gzip-compressed; unpack it first (gunzip -k)");
+  if (const std::string kind = foreign_kind(file_, head, WantedFile::kLog); !kind.empty()) refuse_file(file_, kind);
   in_.clear();
   in_.seekg(0, std::ios::end);
   size_bytes_ = static_cast<std::uint64_t>(in_.tellg());

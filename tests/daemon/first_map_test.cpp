@@ -101,9 +101,9 @@ TEST_F(FirstMapTest, CoarseCellsAreWarnedOf) {
 TEST_F(FirstMapTest, SwappedThresholdsAreWarnedOf) {
   write_grid(map_of(100, 50), file_);
   write(file_, "image: hall.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0.196\nfree_thresh: 0.65\n");
-  EXPECT_EQ(
-      read_first_map(file_, {}).warnings,
-      std::vector{file_.string() + ": 'occupied_thresh' (0.196) lies below 'free_thresh' (0.65): are they swapped?"});
+  EXPECT_EQ(read_first_map(file_, {}).warnings,
+            std::vector{file_.string() +
+                        ": line 5: 'occupied_thresh' (0.196) lies below 'free_thresh' (0.65): are they swapped?"});
 }
 
 TEST_F(FirstMapTest, OneWithoutFloorIsRefusedByName) {
@@ -112,13 +112,17 @@ TEST_F(FirstMapTest, OneWithoutFloorIsRefusedByName) {
   write(file_, "image: hall.pgm\nresolution: 0.05\norigin: [0, 0, 0]\noccupied_thresh: 0\nfree_thresh: 0.65\n");
   EXPECT_EQ(complaint(),
             file_.string() +
-                ": has no free cell, nowhere could a robot be: are 'occupied_thresh' and 'free_thresh' swapped?");
+                ": has no free cell, nowhere could a robot be; line 5: 'occupied_thresh' (0) lies below 'free_thresh' "
+                "(0.65): are they swapped?");
 }
 
 TEST_F(FirstMapTest, OneWithoutWallsIsWarnedOf) {
   write_grid(OccupancyGrid{{100, 100, 0.05, {0.0, 0.0}}, CellState::kFree}, file_);
-  EXPECT_EQ(read_first_map(file_, {}).warnings,
-            std::vector{file_.string() + ": has no occupied cell, no beam can tell where the robot is"});
+  const auto warnings = read_first_map(file_, {}).warnings;
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0],
+            file_.string() + ": nothing is unknown: what no robot has seen is not told from floor and walls");
+  EXPECT_EQ(warnings[1], file_.string() + ": has no occupied cell, no beam can tell where the robot is");
 }
 
 TEST_F(FirstMapTest, WhatTheMachineHasTooLittleOfNowMayBeThereLater) {

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/files/grid_file.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/registration/contour_score.hpp"
 #include "tool/subcommands.hpp"
+#include "tool/told_grid.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -48,8 +48,8 @@ void add_map_compare(CLI::App& map) {
   command->add_option("B", options->other, "map_server YAML, read at A's cells")->required();
   command->add_flag("--json", options->as_json, "one JSON object");
   command->callback([options] {
-    const OccupancyGrid one = read_grid(options->one);
-    const OccupancyGrid other = read_grid(options->other);
+    const OccupancyGrid one = told_grid(options->one);
+    const OccupancyGrid other = told_grid(options->other);
     print_comparison(mapping::registration::acceptance(one, other), mapping::registration::contour_score(one, other),
                      options->as_json);
   });

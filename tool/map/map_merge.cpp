@@ -18,6 +18,7 @@
 #include "surveying/grid_registration/global_merge.hpp"
 #include "surveying/grid_registration/prior_merge.hpp"
 #include "tool/subcommands.hpp"
+#include "tool/told_grid.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -113,8 +114,8 @@ void print_result(const Result& result, double acceptance, double agreement, con
 }
 
 void run_merge(const MergeOptions& options) {
-  const OccupancyGrid map = read_grid(options.map);
-  const OccupancyGrid local = at_resolution(read_grid(options.local), map.resolution_m());
+  const OccupancyGrid map = told_grid(options.map);
+  const OccupancyGrid local = at_resolution(told_grid(options.local), map.resolution_m());
   const Result result = timed_merge(map, local, options);
   const OccupancyGrid moved = mapping::registration::transformed_grid(local, result.map_from_local, map.geometry());
   print_result(result, mapping::registration::acceptance(map, moved).value(),

@@ -14,6 +14,7 @@
 #include "tool/output_file.hpp"
 #include "tool/picture/scene.hpp"
 #include "tool/subcommands.hpp"
+#include "tool/told_grid.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -59,8 +60,8 @@ void add_scan_from(Scene& scene, const std::string& file) {
 void draw(const PictureOptions& options) {
   require_output_beside(options.png, options.map);
   require_output_beside(options.png, picture_named_in(options.map));
-  const OccupancyGrid map = read_grid(options.map);
-  const OccupancyGrid before = options.before.empty() ? OccupancyGrid{} : read_grid(options.before);
+  const OccupancyGrid map = told_grid(options.map);
+  const OccupancyGrid before = options.before.empty() ? OccupancyGrid{} : told_grid(options.before);
   Scene scene{.map = map};
   if (!options.before.empty()) scene.before = &before;
   scene.title = options.title;

@@ -14,11 +14,11 @@
 #include <thread>
 #include <vector>
 
-#include "core/files/grid_file.hpp"
 #include "core/files/scratch_folder.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/replay_start.hpp"
 #include "tool/subcommands.hpp"
+#include "tool/told_grid.hpp"
 #include "tool/view/run_folder.hpp"
 #include "tool/view/view_desk.hpp"
 
@@ -75,7 +75,7 @@ void serve(ViewDesk& desk, const Reading& reading) {
 
 void view_map(const ViewOptions& options) {
   ViewedRun run{.kind = "map", .name = options.target.filename().string()};
-  run.map = std::make_shared<const OccupancyGrid>(read_grid(options.target));
+  run.map = std::make_shared<const OccupancyGrid>(told_grid(options.target));
   ViewDesk desk{std::move(run), options.port};
   serve(desk, [](ViewDesk&, const std::atomic<bool>&) { return std::string{}; });
 }
@@ -86,7 +86,7 @@ void view_folder(const ViewOptions& options) {
   for (const std::string& note : read.notes) warn(note);
   ViewedRun run{.kind = "folder", .name = (folder.has_filename() ? folder : folder.parent_path()).filename().string()};
   run.settings = read.settings;
-  run.map = std::make_shared<const OccupancyGrid>(read_grid(folder / "map.yaml"));
+  run.map = std::make_shared<const OccupancyGrid>(told_grid(folder / "map.yaml"));
   run.first_revision = read.rows.front().revision;
   run.revision = run.first_revision;
   for (const daemon::ChangeNote& change : read.changes)
@@ -137,7 +137,7 @@ void view_recording(const ViewOptions& options) {
   const ScratchFolder scratch;
   job.recording = options.target;
   job.out = scratch.path() / "run";
-  auto given = std::make_shared<const OccupancyGrid>(read_grid(job.map));
+  auto given = std::make_shared<const OccupancyGrid>(told_grid(job.map));
   const daemon::RecordedRun recorded = daemon::recorded_run(job);
   const daemon::StartMap start = daemon::replay_start(recorded, job, std::move(given)).start;
   for (const std::string& line : recorded.faults.lines()) warn(line);

@@ -110,17 +110,15 @@ TEST(GridFile, NamesFileAndPlaceOfWhatItCannotRead) {
   EXPECT_NE(refusal(folder.write("empty.yaml", "")).find("empty.yaml: line 1"), std::string::npos);
   EXPECT_NE(refusal(folder.write("noise.yaml", "\x01{[")).find("noise.yaml: byte 0: is no text"), std::string::npos);
   EXPECT_NE(refusal(folder.write("turned.yaml", "image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0.5]\n"))
-                .find("rotated origin"),
-            std::string::npos);
+                .find("turned.yaml: line 1: picture "),
+            std::string::npos)
+      << "the origin of a turned picture depends on its size";
   for (const char* resolution : {"0.0000001", "1e6", "nan", "-0.05"}) {
     const std::string keys = std::string("image: m.pgm\nresolution: ") + resolution + "\norigin: [0, 0, 0]\n";
     EXPECT_NE(refusal(folder.write("wild.yaml", keys)).find("'resolution'"), std::string::npos) << resolution;
   }
   folder.write("cut.pgm", "P5 100 100 255\nabc");
   EXPECT_NE(refusal(folder.write("cut.yaml", "image: cut.pgm\n" + kKeys)).find("cut.pgm: byte 18: cut short"),
-            std::string::npos);
-  folder.write("ascii.pgm", "P2 1 1 255\n0");
-  EXPECT_NE(refusal(folder.write("ascii.yaml", "image: ascii.pgm\n" + kKeys)).find("ascii.pgm: byte 0"),
             std::string::npos);
 }
 
