@@ -73,6 +73,8 @@ std::optional<OccupancyGrid> check_map(const Settings& settings, const std::stri
     findings.push_back(
         {Level::kOk, "map", settings.map.file + ": " + size_text(map.grid.geometry()) + ": " + cells_text(map.grid)});
     for (std::string& warning : map.warnings) findings.push_back({Level::kWarning, "map", std::move(warning)});
+    if (std::string doubt = doubt_of_pose(map.grid, settings); !doubt.empty())
+      findings.push_back({Level::kWarning, "map", std::move(doubt)});
     findings.push_back({Level::kOk, "memory", memory_text(settings.map.file, memory_limit())});
     const auto unit = unit_memory();
     if (std::string why = unit ? why_not_as_service(settings.map.file, *unit) : ""; !why.empty())

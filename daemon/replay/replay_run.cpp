@@ -220,7 +220,7 @@ RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   const double began_cpu_s = process_cpu_s();
   GridWithNotes read = read_grid_with_notes(job.map);
   const auto warn = [&](const std::string& line) {
-    if (job.warn) job.warn(line);
+    if (job.warn && !line.empty()) job.warn(line);
   };
   for (const std::string& note : read.notes) warn(note);
   auto given = std::make_shared<const OccupancyGrid>(std::move(read.grid));
@@ -228,6 +228,7 @@ RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   const RecordedRun recorded = recorded_run(job);
   const ReplayStart begun = replay_start(recorded, job, std::move(given));
   require_pose_on(begun.start.map->geometry(), job.settings);
+  warn(doubt_of_pose(*begun.start.map, job.settings));
   StagingFolder staging{job.out};
   RunReport report;
   {

@@ -102,9 +102,19 @@ void add_port_contradictions(const Settings& settings, std::vector<Contradiction
   const std::string& laser = settings.laser.port;
   if (robot.empty()) found.push_back({"robot.port", "must name a serial device", {}});
   if (laser.empty()) found.push_back({"laser.port", "must name a serial device", {}});
-  std::error_code error;
-  if (fs::exists(robot, error) && is_same(robot, laser))
+  if (!robot.empty() && is_same(robot, laser))
     found.push_back({"laser.port", "must not be the same device as 'robot.port'", {"robot.port"}});
+}
+
+/// Only a shell knows what `~` stands for: a file named so would lie in a folder "~" of the working directory.
+void add_home_contradictions(const Settings& settings, const std::string& file, std::vector<Contradiction>& found) {
+  std::vector<NamedFile> named = files_of(settings, file);
+  named.push_back({"robot.port", "", settings.robot.port});
+  named.push_back({"laser.port", "", settings.laser.port});
+  for (const NamedFile& one : named) {
+    if (!one.key.empty() && one.part.empty() && one.file.string().starts_with("~"))
+      found.push_back({one.key, "'~' is not expanded: write the whole path", {}});
+  }
 }
 
 /// A wandering robot drives forward: a laser that looks aside or back would not see what lies ahead.
@@ -129,6 +139,7 @@ std::vector<Contradiction> contradictions_in_a_run(const Settings& settings, con
   std::vector<Contradiction> found;
   add_port_contradictions(settings, found);
   add_file_contradictions(settings, file, found);
+  add_home_contradictions(settings, file, found);
   add_mount_contradictions(settings, found);
   return found;
 }

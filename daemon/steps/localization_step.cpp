@@ -35,6 +35,17 @@ void require_pose_on(const GridGeometry& map, const Settings& settings) {
   throw SettingsError(text);
 }
 
+std::string doubt_of_pose(const OccupancyGrid& map, const Settings& settings) {
+  if (!settings.initial_pose) return "";
+  const CellState state = map.at(map.geometry().cell_at(settings.initial_pose->position()));
+  if (state == CellState::kFree) return "";
+  char text[160];
+  (void)std::snprintf(text, sizeof text, "'localization.initial_pose': %g,%g lies %s of the map: is it right?",
+                      settings.initial_pose->x, settings.initial_pose->y,
+                      state == CellState::kUnknown ? "in the unknown" : "on an occupied cell");
+  return text;
+}
+
 LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
     : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
       ratio_{settings.mapping.divergence},

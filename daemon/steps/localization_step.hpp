@@ -36,6 +36,8 @@ struct StartMap {
 
 /// Throws SettingsError where `localization.initial_pose` lies outside the map: one line that names the map's extent.
 void require_pose_on(const GridGeometry& map, const Settings& settings);
+/// One line where `localization.initial_pose` lies on a cell of the map on which no robot was seen to fit; else "".
+[[nodiscard]] std::string doubt_of_pose(const OccupancyGrid& map, const Settings& settings);
 
 class LocalizationStep {
  public:

@@ -90,6 +90,20 @@ TEST_F(CheckConfig, AStartPoseOffTheMapIsAnErrorThatNamesTheMapsExtent) {
   EXPECT_FALSE(would_start());
 }
 
+TEST_F(CheckConfig, AStartInTheUnknownOrInAWallIsAWarning) {
+  const auto warned = [&](const Pose2& pose, const std::string& where) {
+    settings_.initial_pose = pose;
+    const auto findings = check_config(settings_, "robot.yaml", "");
+    return std::any_of(findings.begin(), findings.end(), [&](const Finding& one) {
+      return one.level == Level::kWarning && one.text.find("lies " + where + " of the map: is it right?") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(warned({0.12, 0.07, 0.0}, "in the unknown"));
+  EXPECT_TRUE(warned({0.01, 0.07, 0.0}, "on an occupied cell"));
+  EXPECT_FALSE(warned({0.07, 0.07, 0.0}, ""));
+  EXPECT_TRUE(would_start());
+}
+
 TEST_F(CheckConfig, AbsentDevicesAreWaitedFor) {
   EXPECT_EQ(finding("robot").level, Level::kWarning);
   EXPECT_EQ(finding("laser").text.find("/nowhere/laser is missing"), 0u) << finding("laser").text;

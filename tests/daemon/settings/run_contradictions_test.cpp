@@ -103,6 +103,17 @@ TEST_F(RunContradictions, EachDeviceHasAPortOfItsOwn) {
   EXPECT_EQ(told({"laser.port="}), Lines{"laser.port: must name a serial device"});
   EXPECT_EQ(told({"robot.port=/dev/null", "laser.port=/dev/null"}),
             Lines{"laser.port: must not be the same device as 'robot.port'"});
+  EXPECT_EQ(told({"robot.port=/nowhere/port", "laser.port=/nowhere/port"}),
+            Lines{"laser.port: must not be the same device as 'robot.port'"})
+      << "a device that is not there yet";
+}
+
+TEST_F(RunContradictions, NoPathBeginsWithTheHomeOfAShell) {
+  for (const char* key : {"map.file", "map.store", "map.newest", "recording.file", "control.socket", "poses.socket",
+                          "dashboard.token_file", "robot.port", "laser.port"}) {
+    EXPECT_EQ(told({std::string(key) + "=~/deltamap/file.yaml"}),
+              Lines{std::string(key) + ": '~' is not expanded: write the whole path"});
+  }
 }
 
 TEST_F(RunContradictions, AreToldWhereTheKeyIsGiven) {
