@@ -78,11 +78,13 @@ void send_log(drivers::carmen::CarmenLog& lines, const drivers::carmen::CarmenSu
   while (const auto record = lines.next()) {
     progress.show(lines.read_bytes());
     const auto* scan = std::get_if<drivers::carmen::CarmenScan>(&*record);
-    if (scan == nullptr || (survey.scans_carry_poses && !scan->poses)) continue;
+    if (scan == nullptr || scan->is_repeated || (survey.scans_carry_poses && !scan->poses)) continue;
     for (const drivers::carmen::TimedPose& pose : track.until(scan->time)) {
       if (pose.time != scan->time) bytes.add_pose(pose.time, pose.odom_from_robot);
     }
-    bytes.add_pose(scan->time, scan->poses ? scan->poses->odom_from_robot : track.at(scan->time));
+    bytes.add_pose(scan->time, scan->poses ? drivers::carmen::without_resets(survey.resets, scan->line,
+                                                                             scan->poses->odom_from_robot)
+                                           : track.at(scan->time));
     bytes.add_scan(*scan);
   }
   for (const drivers::carmen::TimedPose& pose : track.until(Timestamp::max()))
@@ -107,6 +109,9 @@ void print_import_text(const CarmenImport& done, const std::string& recording) {
     std::cout << survey.doubled_scans << " scans without a pose left out: the log's other scans carry poses\n";
   }
   if (pose_source(survey) == "none") std::cout << "the log has no pose: the robot is taken to stand still\n";
+  for (const auto* notes : {&survey.notes, &survey.drive_notes}) {
+    for (const std::string& note : *notes) std::cout << note << '\n';
+  }
   if (done.gaps > 0) std::cout << done.gaps << " pauses of more than an hour are left without odometry\n";
 }
 
@@ -124,7 +129,13 @@ void print_import_json(const CarmenImport& done, const std::string& recording) {
                               {"times_from", survey.clock.by_logger ? "logger" : "time stamps"},
                               {"cut", nullptr},
                               {"scans_left_out", survey.doubled_scans},
-                              {"gaps", done.gaps}};
+                              {"gaps", done.gaps},
+                              {"laser_mount", nullptr},
+                              {"odometry_resets", survey.resets.size()},
+                              {"notes", survey.notes}};
+  for (const std::string& note : survey.drive_notes) json["notes"].push_back(note);
+  if (const auto& mount = survey.robot_from_laser)
+    json["laser_mount"] = {{"x_m", mount->x}, {"y_m", mount->y}, {"yaw_deg", degrees(mount->theta)}};
   if (survey.no_return_m) json["no_return_m"] = *survey.no_return_m;
   if (survey.cut) json["cut"] = *survey.cut;
   std::cout << json.dump(2) << '\n';

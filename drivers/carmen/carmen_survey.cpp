@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "core/geometry/angle.hpp"
+#include "drivers/carmen/carmen_doubts.hpp"
 #include "drivers/carmen/carmen_words.hpp"
 
 namespace deltamap::drivers::carmen {
@@ -20,6 +21,7 @@ using drivers::lms200::Units;
 
 constexpr double kNoReturnShare = 0.003;     // of the beams, before the largest values count as no return
 constexpr double kNoReturnWidthM = 0.15;     // so far below the largest one; a cluster of codes is 0.11 m wide
+constexpr double kNoReturnGapM = 0.3;        // below the values that are no return: what goes over into ranges is one
 constexpr double kDecimalTolerance = 1e-9;   // m
 constexpr double kMultipleTolerance = 1e-6;  // of a centimetre: what parsing decimals may cost
 constexpr std::int64_t kLongestWord = 0x7FFF;
@@ -34,9 +36,9 @@ class RangeCensus {
     ++beams_;
     const double range_cm = range_m * 100.0;
     all_are_centimetres_ = all_are_centimetres_ && std::abs(range_cm - std::round(range_cm)) < kMultipleTolerance;
-    if (range_m > 0.0 && (largest_.empty() || range_m >= lowest_of(largest_.rbegin()->first))) {
+    if (range_m > 0.0 && (largest_.empty() || range_m >= lowest_of(largest_.rbegin()->first) - kNoReturnGapM)) {
       ++largest_[range_m];
-      largest_.erase(largest_.begin(), largest_.lower_bound(lowest_of(largest_.rbegin()->first)));
+      largest_.erase(largest_.begin(), largest_.lower_bound(lowest_of(largest_.rbegin()->first) - kNoReturnGapM));
     }
     note_word(longest_cm_, word_of(range_m, 100.0));
     note_word(longest_mm_, word_of(range_m, 1000.0));
@@ -49,18 +51,25 @@ class RangeCensus {
     return longest <= 0x1FFF ? 0x00 : longest <= 0x3FFF ? 0x04 : 0x06;
   }
   /// Finds the value that stands for "no return": the lowest of the values near the largest one, where those are many.
-  /// Where the largest is a code of the scanner, only codes count, because true ranges may lie close to them.
+  /// Where the largest is a code of the scanner, only codes count, because true ranges may lie close to them. Otherwise
+  /// it must be one and the same value, or stand apart from all smaller ones: the corners of a room do neither.
   void find_no_return(CarmenSurvey& survey) const {
     const double words_per_m = units() == Units::kCentimetre ? 100.0 : 1000.0;
     const auto is_code = [&](double range_m) { return is_scanner_code(word_of(range_m, words_per_m)); };
     const bool codes_alone = !largest_.empty() && is_code(largest_.rbegin()->first);
     std::size_t count = 0;
     std::optional<double> lowest_m;
+    std::size_t values = 0;
+    std::optional<double> below_m;  // the largest of the other values, where it is near
     for (const auto& [range_m, beams] : largest_) {
-      if (codes_alone && !is_code(range_m)) continue;
+      if (range_m < lowest_of(largest_.rbegin()->first)) below_m = range_m;
+      if (range_m < lowest_of(largest_.rbegin()->first) || (codes_alone && !is_code(range_m))) continue;
       if (!lowest_m) lowest_m = range_m;
       count += beams;
+      ++values;
     }
+    const bool stands_apart = !below_m || !lowest_m || *lowest_m - *below_m > kNoReturnGapM;
+    if (!codes_alone && values != 1 && !stands_apart) return;
     const double share = static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, beams_));
     if (!lowest_m || share < kNoReturnShare) return;
     survey.no_return_m = lowest_m;
@@ -81,20 +90,46 @@ class RangeCensus {
   std::int64_t longest_mm_ = 0;
 };
 
-void add_scan(CarmenSurvey& survey, RangeCensus& census, const CarmenScan& scan) {
+/// What the survey gathers on its way through the log.
+struct Gathered {
+  RangeCensus census{};
+  CarmenDoubts doubts{};
+  std::vector<LoggedPose> poses{};
+};
+
+void add_scan(CarmenSurvey& survey, Gathered& gathered, const CarmenScan& scan) {
   if (scan.poses && !survey.scans_carry_poses) {  // what came before without a pose is left out
     survey.scans_carry_poses = true;
     survey.doubled_scans = survey.scans;
     survey.scans = 0;
-    survey.odometry = {};
+    gathered.poses.clear();
+    gathered.doubts = {};
   }
   if (survey.scans_carry_poses && !scan.poses) {
     ++survey.doubled_scans;
     return;
   }
+  if (scan.is_repeated && survey.no_clock.empty()) return;
   if (survey.scans == 0) survey.variant = nearest_variant(scan);
   ++survey.scans;
-  for (const double range_m : scan.ranges_m) census.add(range_m);
+  gathered.doubts.add(scan);
+  if (scan.poses) gathered.poses.push_back({scan.line, scan.time, scan.poses->odom_from_robot});
+  for (const double range_m : scan.ranges_m) gathered.census.add(range_m);
+}
+
+/// Poses without the log's resets, by time where they are ODOM lines; and what is told of the whole log.
+void conclude(CarmenSurvey& survey, const Gathered& gathered, const CarmenFaults& faults) {
+  survey.robot_from_laser = gathered.doubts.robot_from_laser();
+  survey.notes = gathered.doubts.lines(faults);
+  if (!survey.no_clock.empty()) return;
+  survey.drive_notes = faults.clock;
+  survey.resets = resets_in(gathered.poses);
+  if (std::string line = resets_line(survey.resets); !line.empty()) survey.drive_notes.push_back(std::move(line));
+  if (survey.scans_carry_poses) return;
+  for (const LoggedPose& pose : gathered.poses)
+    survey.odometry.push_back({pose.time, without_resets(survey.resets, pose.line, pose.odom_from_robot)});
+  std::stable_sort(survey.odometry.begin(), survey.odometry.end(),
+                   [](const TimedPose& a, const TimedPose& b) { return a.time < b.time; });
 }
 
 /// How well each of the two times tells the scans of a log apart.
@@ -166,20 +201,20 @@ CarmenSurvey survey_of(const std::filesystem::path& log, std::optional<double> n
   CarmenSurvey survey;
   find_clock(survey, log);
   CarmenLog lines{log, survey.clock};
-  RangeCensus census;
+  Gathered gathered;
   while (const auto record = lines.next()) {
     if (tell_bytes) tell_bytes(lines.read_bytes(), lines.size_bytes());
     if (const auto* scan = std::get_if<CarmenScan>(&*record)) {
-      add_scan(survey, census, *scan);
+      add_scan(survey, gathered, *scan);
     } else if (!survey.scans_carry_poses) {
       const auto& odometry = std::get<CarmenOdometry>(*record);
-      survey.odometry.push_back({odometry.time, odometry.odom_from_robot});
+      gathered.poses.push_back({odometry.line, odometry.time, odometry.odom_from_robot});
     }
   }
   survey.cut = lines.cut();
   if (survey.scans == 0) throw std::runtime_error(log.string() + ": no scan from the first line to the last");
-  std::stable_sort(survey.odometry.begin(), survey.odometry.end(),
-                   [](const TimedPose& a, const TimedPose& b) { return a.time < b.time; });
+  conclude(survey, gathered, lines.faults());
+  const RangeCensus& census = gathered.census;
   survey.units = census.units();
   survey.measuring_mode = census.measuring_mode();
   if (no_return_m) {

@@ -15,6 +15,7 @@
 #include "core/geometry/pose2.hpp"
 #include "core/time.hpp"
 #include "drivers/carmen/carmen_log.hpp"
+#include "drivers/carmen/carmen_resets.hpp"
 #include "drivers/lms200/configuration.hpp"
 #include "drivers/lms200/variant.hpp"
 
@@ -22,7 +23,7 @@ namespace deltamap::drivers::carmen {
 
 struct TimedPose {
   Timestamp time;
-  Pose2 odom_from_robot;
+  Pose2 odom_from_robot;  ///< without the log's resets
 };
 
 struct CarmenSurvey {
@@ -31,8 +32,12 @@ struct CarmenSurvey {
   bool scans_carry_poses = false;
   std::vector<TimedPose> odometry;  ///< by time; empty where the scans carry poses
   CarmenClock clock;
-  std::string no_clock;            ///< why no time of the log can be used; empty where one can
-  std::optional<std::string> cut;  ///< where the log was cut: one line
+  std::string no_clock;                   ///< why no time of the log can be used; empty where one can
+  std::optional<std::string> cut;         ///< where the log was cut: one line
+  std::vector<OdometryReset> resets;      ///< of the poses that are imported
+  std::optional<Pose2> robot_from_laser;  ///< the mount that the log's scan lines have
+  std::vector<std::string> notes;         ///< what is left out, filled in or doubted, one line each
+  std::vector<std::string> drive_notes;   ///< the same of times and odometry, which only an import looks at
 
   drivers::lms200::Units units = drivers::lms200::Units::kMillimetre;
   std::uint8_t measuring_mode = 0;                 ///< protocols.md B4: the one whose codes hold the longest word
@@ -57,6 +62,7 @@ struct CarmenSurvey {
 /// What `--no-return` means, for every command that reads a log.
 inline constexpr const char* kNoReturnHelp =
     "ranges of this many metres and more are no return (0: only the scanner's own codes are); default: the values "
-    "within 0.15 m of the log's largest, where at least 0.3 % of the beams have them";
+    "within 0.15 m of the log's largest, where at least 0.3 % of the beams have them and they stand apart from all "
+    "others";
 
 }  // namespace deltamap::drivers::carmen

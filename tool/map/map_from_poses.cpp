@@ -113,7 +113,8 @@ std::string as_json(const MapFromPoses& made, const std::string& yaml) {
                                 {"occupied_cells", count_of(made.grid, CellState::kOccupied)},
                                 {"free_cells", count_of(made.grid, CellState::kFree)},
                                 {"no_return_m", no_return_m ? nlohmann::ordered_json(*no_return_m) : nullptr},
-                                {"no_return_share", made.survey.no_return_share}}
+                                {"no_return_share", made.survey.no_return_share},
+                                {"notes", made.survey.notes}}
       .dump(2);
 }
 
@@ -123,6 +124,7 @@ void print(const MapFromPoses& made, const std::string& yaml) {
             << count_of(made.grid, CellState::kOccupied) << " occupied, " << count_of(made.grid, CellState::kFree)
             << " free\n";
   if (const std::string line = drivers::carmen::no_return_line(made.survey); !line.empty()) std::cout << line << '\n';
+  for (const std::string& note : made.survey.notes) std::cout << note << '\n';
 }
 
 void run_from_poses(const FromPosesOptions& options) {

@@ -52,10 +52,10 @@ TEST(CarmenLog, ReadsEveryKindOfLineAndSkipsOthers) {
   EXPECT_EQ(robotlaser.stated_max_range_m, 5.6);
   EXPECT_EQ(robotlaser.first_bearing_rad, -1.25);
   EXPECT_EQ(robotlaser.poses->odom_from_robot, (Pose2{4, 5, wrapped_angle(6)}));
-  EXPECT_EQ(unix_ns(robotlaser.time), 12500000000);
+  EXPECT_EQ(unix_ns(robotlaser.times.stamp.value()), 12500000000);
   const auto& raw = std::get<CarmenScan>(all[3]);
   EXPECT_FALSE(raw.poses);
-  EXPECT_EQ(unix_ns(raw.time), 1497524441655000000);
+  EXPECT_EQ(unix_ns(raw.times.stamp.value()), 1497524441655000000);
 }
 
 TEST(CarmenLog, TakesTheBearingsOfFlaserFromTheNumberOfItsValues) {
@@ -94,12 +94,19 @@ TEST(CarmenLog, ReadsALogThatWasCutUpToTheCutAndSaysWhere) {
   EXPECT_FALSE(whole.next() || whole.cut()) << "a last line may lack its line feed";
 }
 
-TEST(CarmenLog, NamesFileAndLineOfABrokenLineThatOthersFollow) {
+TEST(CarmenLog, LeavesOutABrokenLineThatOthersFollowAndNamesIt) {
   const test::TemporaryFolder folder;
   for (std::size_t kept = 7; kept < kFlaser.find(" 2690.3"); ++kept) {
-    const auto file = folder.write("cut.log", kOdometry + kFlaser + kFlaser.substr(0, kept) + "\n" + kFlaser);
-    EXPECT_NE(refusal(file).find("cut.log:3: "), std::string::npos) << kept;
+    CarmenLog log{folder.write("cut.log", kOdometry + kFlaser + kFlaser.substr(0, kept) + "\n" + kFlaser)};
+    EXPECT_TRUE(log.next() && log.next() && log.next()) << kept;
+    EXPECT_FALSE(log.next() || log.cut()) << kept;
+    ASSERT_EQ(log.faults().broken_lines, 1u) << kept;
+    EXPECT_NE(log.faults().broken.front().find("cut.log:3: "), std::string::npos) << kept;
   }
+}
+
+TEST(CarmenLog, RefusesALogOfBrokenLinesByTheFirst) {
+  const test::TemporaryFolder folder;
   EXPECT_NE(refusal(folder.write("word.log", "FLASER 2 1 x 0 0 0 0 0 0 1 h 1\n"))
                 .find("word.log:1: 'range' must be a number, not 'x'"),
             std::string::npos);

@@ -22,7 +22,7 @@ std::string log_with_cluster(std::size_t in_cluster) {
   std::string log;
   for (std::size_t scan = 0; scan < 10; ++scan) {
     std::vector<std::string> ranges(kBeams, "3.21");
-    ranges[0] = "50.99";  // 0.17 m below the largest value
+    ranges[0] = "50.70";  // 0.35 m below the cluster
     for (std::size_t i = 0; i < in_cluster; ++i) {
       ranges[10 + i] = "51." + std::to_string(105 + (scan + i) % 12).substr(1);
     }

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+// A drawn log with each defect that logs of others have, at many places: what is left is read right, and the defect is
+// told in a line.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+
+#include "drivers/carmen/carmen_survey.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+
+namespace deltamap::drivers::carmen {
+namespace {
+
+constexpr int kScans = 40;
+constexpr int kPlaces = 20;
+constexpr double kStep_s = 0.2;
+constexpr double kSpeed_m_per_s = 0.3;
+constexpr double kStart_s = 1'100'000'000.0;
+
+/// Range in a room of 8 m x 6 m, whose lower left corner is the origin.
+double range_m(const Pose2& laser, double bearing_rad) {
+  const double c = std::cos(laser.theta + bearing_rad);
+  const double s = std::sin(laser.theta + bearing_rad);
+  const double across = c > 0.0 ? (8.0 - laser.x) / c : c < 0.0 ? -laser.x / c : 1e9;
+  const double up = s > 0.0 ? (6.0 - laser.y) / s : s < 0.0 ? -laser.y / s : 1e9;
+  return std::min(across, up);
+}
+
+/// A drive along a gentle arc.
+Pose2 truth(int scan) {
+  const double turned = 0.02 * scan;
+  return {1.5 + kSpeed_m_per_s * kStep_s * scan, 2.0 + 0.03 * scan, turned};
+}
+
+std::string text(const char* format, double value) {
+  char buffer[64];
+  (void)std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+std::string text(const Pose2& pose) {
+  return text(" %.3f", pose.x) + text(" %.3f", pose.y) + text(" %.4f", pose.theta);
+}
+
+/// One scan of the log, before it becomes a line.
+struct Line {
+  std::vector<std::string> ranges{};
+  int announced = 181;
+  Pose2 robot{};
+  Pose2 robot_from_laser{0.1, 0.0, 0.0};
+  double stamp_s = 0.0;
+  double logger_s = 0.0;
+  std::string before{};  ///< lines
+  [[nodiscard]] std::string flaser() const {
+    std::string line = "FLASER " + std::to_string(announced);
+    for (const std::string& range : ranges) line += " " + range;
+    return line + text(robot * robot_from_laser) + text(robot) + text(" %.6f", stamp_s) + " host" +
+           text(" %.6f", logger_s);
+  }
+};
+
+std::vector<Line> drawn_lines(const Pose2& robot_from_laser = {0.1, 0.0, 0.0}) {
+  std::vector<Line> lines;
+  for (int i = 0; i < kScans; ++i) {
+    Line line{.robot = truth(i), .robot_from_laser = robot_from_laser};
+    line.stamp_s = kStart_s + kStep_s * i;
+    line.logger_s = 2.0 + kStep_s * i;
+    for (int beam = 0; beam < 181; ++beam)
+      line.ranges.push_back(text("%.2f", range_m(line.robot * robot_from_laser, radians(beam - 90.0))));
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::string log_of(const std::vector<Line>& lines) {
+  std::string log = "# a drawn log\n";
+  for (const Line& line : lines) log += line.before + line.flaser() + "\n";
+  return log;
+}
+
+struct Defect {
+  std::string name;
+  std::function<std::string(std::vector<Line>, std::size_t)> log;  ///< with the defect at a scan
+  std::string told;                                                ///< a part of the line
+  std::size_t scans = kScans;
+};
+
+/// The line of a scan, changed as text.
+std::function<std::string(std::vector<Line>, std::size_t)> with_text(
+    const std::function<std::string(const std::string&)>& change) {
+  return [change](const std::vector<Line>& lines, std::size_t at) {
+    std::string log;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      log += (i == at ? change(lines[i].flaser()) : lines[i].flaser()) + "\n";
+    return log;
+  };
+}
+
+std::function<std::string(std::vector<Line>, std::size_t)> with_line(const std::function<void(Line&)>& change) {
+  return [change](std::vector<Line> lines, std::size_t at) {
+    change(lines[at]);
+    return log_of(lines);
+  };
+}
+
+/// From a scan on.
+std::function<std::string(std::vector<Line>, std::size_t)> with_all_from(const std::function<void(Line&)>& change) {
+  return [change](std::vector<Line> lines, std::size_t at) {
+    for (std::size_t i = at; i < lines.size(); ++i) change(lines[i]);
+    return log_of(lines);
+  };
+}
+
+std::vector<Defect> defects() {
+  const auto moved_by = [](const Pose2& jump) { return [jump](Line& line) { line.robot = jump * line.robot; }; };
+  return {
+      {"one range too few", with_line([](Line& line) { line.ranges.pop_back(); }), "181 ranges announced, 180 there",
+       kScans - 1},
+      {"one range too many", with_line([](Line& line) { line.ranges.push_back("1.00"); }),
+       "181 ranges announced, 182 there", kScans - 1},
+      {"a word for a range", with_line([](Line& line) { line.ranges[77] = "1.0x"; }),
+       "'range' must be a number, not '1.0x'", kScans - 1},
+      {"a line cut short", with_text([](const std::string& line) { return line.substr(0, 400); }),
+       ": cut short: ", kScans - 1},
+      {"noise", with_text([](const std::string&) { return std::string(20, '\0'); }), "(not text)", kScans - 1},
+      {"two lines in one", with_text([](const std::string& line) { return line + line; }), "ranges announced, ",
+       kScans - 1},
+      {"a heading that is none", with_line([](Line& line) { line.robot.theta = 1.1e9; }),
+       "has a heading of 1.1e+09 rad", kScans - 1},
+      {"a range that is none", with_line([](Line& line) { line.ranges[5] = "nan"; }),
+       "1 ranges are no numbers, or below 0: not valid"},
+      {"ranges in millimetres", with_line([](Line& line) {
+         for (std::string& range : line.ranges) range = text("%.0f", 1000.0 * std::stod(range));
+       }),
+       "1 scan (the first in line "},
+      {"another mount", with_line([](Line& line) { line.robot_from_laser.x += 0.1; }),
+       "; elsewhere in 1 scan (the first in line "},
+      {"a rear laser", with_line([](Line& line) { line.before = "RLASER 2 1 1 0 0 0 0 0 0 1 host 0\n"; }),
+       "1 scan of RLASER left out"},
+      {"a second laser", with_line([](Line& line) { line.before = "ROBOTLASER2 0 0 0 0 0\n"; }),
+       "1 scan of ROBOTLASER2 left out"},
+      {"a clock set back by an hour", with_all_from([](Line& line) { line.stamp_s -= 3600.0; }),
+       "the log's clock was set back 1 times"},
+      {"a clock set back, without the logger's", with_all_from([](Line& line) {
+         line.stamp_s -= 60.0;
+         line.logger_s = 0.0;
+       }),
+       "the log's clock was set back 1 times"},
+      {"a clock set back by a little", with_all_from([](Line& line) { line.stamp_s -= 0.5; }),
+       "repeat the time stamp of the scan before"},
+      {"a wrong stamp", with_line([](Line& line) { line.stamp_s = 12.0; }), "the log's clock was set back 1 times"},
+      {"a repeated stamp", with_line([](Line& line) { line.stamp_s -= kStep_s; }),
+       "1 scans repeat the time stamp of the scan before"},
+      {"a line twice", with_text([](const std::string& line) { return line + "\n" + line; }), "left out"},
+      {"odometry begins anew", with_all_from([](Line& line) { line.robot = inverse(truth(0)) * line.robot; }),
+       "the odometry jumps 1 times"},
+      {"odometry jumps", with_all_from(moved_by({5.0, -3.0, 0.0})), "the odometry jumps 1 times"},
+      {"odometry turns", with_all_from(moved_by({0.0, 0.0, 1.5})), "the odometry jumps 1 times"},
+      {"270 degrees",
+       [](const std::vector<Line>& lines, std::size_t at) {
+         std::string log;
+         for (std::size_t i = 0; i < lines.size(); ++i) {
+           if (i == at) {
+             log += "ROBOTLASER1 0 -2.356194 4.712389 0.017453 30.0 0.01 0 271";
+             for (int beam = 0; beam < 271; ++beam) log += " 2.00";
+             log += " 0" + text(lines[i].robot * lines[i].robot_from_laser) + text(lines[i].robot) + " 0 0 0 0 0" +
+                    text(" %.6f", lines[i].stamp_s) + " host" + text(" %.6f", lines[i].logger_s) + "\n";
+           } else {
+             log += lines[i].flaser() + "\n";
+           }
+         }
+         return log;
+       },
+       "90 of 271 beams a scan lie beyond ±90° and are left out in 1 scan"},
+  };
+}
+
+class CarmenDefects : public testing::Test {
+ protected:
+  /// What an import would tell, and what it would take.
+  void look(const std::string& log) {
+    file_ = folder_.write("drawn.log", log);
+    survey_ = survey_of(file_, std::nullopt);
+    told_ = survey_.notes;
+    told_.insert(told_.end(), survey_.drive_notes.begin(), survey_.drive_notes.end());
+    if (survey_.cut) told_.push_back(*survey_.cut);
+  }
+  [[nodiscard]] bool tells(const std::string& part) const {
+    return std::any_of(told_.begin(), told_.end(),
+                       [&](const std::string& line) { return line.find(part) != std::string::npos; });
+  }
+  [[nodiscard]] std::string all_told() const {
+    std::string all;
+    for (const std::string& line : told_) all += line + "\n";
+    return all;
+  }
+  /// Times go on, and the robot drives as it did.
+  void expect_one_drive() {
+    CarmenLog lines{file_, survey_.clock};
+    std::optional<TimedPose> last;
+    std::size_t scans = 0;
+    while (const auto record = lines.next()) {
+      const auto& scan = std::get<CarmenScan>(*record);
+      if (scan.is_repeated) continue;
+      ++scans;
+      const Pose2 pose = without_resets(survey_.resets, scan.line, scan.poses->odom_from_robot);
+      if (last) {
+        EXPECT_GT(scan.time, last->time) << "line " << scan.line;
+        EXPECT_LT(seconds(scan.time - last->time), 3.5 * kStep_s) << "line " << scan.line;
+        EXPECT_LT(distance_between(last->odom_from_robot, pose), 3.5 * kSpeed_m_per_s * kStep_s) << scan.line;
+        EXPECT_LT(std::abs(turn_between(last->odom_from_robot.theta, pose.theta)), 0.1) << scan.line;
+      }
+      last = TimedPose{scan.time, pose};
+    }
+    EXPECT_EQ(scans, survey_.scans);
+  }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path file_;
+  CarmenSurvey survey_;
+  std::vector<std::string> told_;
+};
+
+TEST_F(CarmenDefects, AreTakenOutAndToldAtEveryPlace) {
+  for (const Defect& defect : defects()) {
+    for (int place = 0; place < kPlaces; ++place) {
+      SCOPED_TRACE(defect.name + " at scan " + std::to_string(2 * place + 1));
+      look(defect.log(drawn_lines(), static_cast<std::size_t>(2 * place + 1)));
+      EXPECT_TRUE(tells(defect.told)) << all_told();
+      EXPECT_EQ(survey_.scans, defect.scans);
+      expect_one_drive();
+    }
+  }
+}
+
+TEST_F(CarmenDefects, SweepsThatALogHasAsTwoKindsAreImportedOnce) {
+  std::vector<Line> lines = drawn_lines();
+  for (Line& line : lines)
+    line.before = "RAWLASER1 0 -1.5708 3.1416 0.0175 81.9 0.01 0 2 1 1 0" + text(" %.6f", line.stamp_s) + " host" +
+                  text(" %.6f\n", line.logger_s);
+  look(log_of(lines));
+  EXPECT_EQ(survey_.scans, static_cast<std::size_t>(kScans));
+  EXPECT_EQ(survey_.doubled_scans, static_cast<std::size_t>(kScans)) << "told by the import";
+  std::string log;
+  for (const Line& line : lines) {
+    const std::string poses = text(line.robot * line.robot_from_laser) + text(line.robot);
+    log += line.flaser() + "\nROBOTLASER1 0 -1.5708 3.1416 0.0175 81.9 0.01 0 2 1 1 0" + poses + " 0 0 0 0 0" +
+           text(" %.6f", line.stamp_s) + " host" + text(" %.6f\n", line.logger_s + 0.001);
+  }
+  look(log);
+  EXPECT_EQ(survey_.scans, static_cast<std::size_t>(kScans));
+  EXPECT_TRUE(tells("40 scans repeat the time stamp of the scan before")) << all_told();
+}
+
+TEST_F(CarmenDefects, AGoodLogIsReadWithItsMountAndNothingElseTold) {
+  for (const Pose2& mount : {Pose2{0.1, 0.0, 0.0}, Pose2{-0.2, 0.0, std::numbers::pi}, Pose2{0.25, -0.05, 0.3}}) {
+    look(log_of(drawn_lines(mount)));
+    ASSERT_EQ(told_.size(), 1u) << all_told();
+    EXPECT_TRUE(tells("the log has the laser at ")) << all_told();
+    ASSERT_TRUE(survey_.robot_from_laser);
+    EXPECT_LT(distance_between(*survey_.robot_from_laser, mount), 0.002);
+    EXPECT_LT(std::abs(turn_between(survey_.robot_from_laser->theta, mount.theta)), 0.001);
+    EXPECT_FALSE(survey_.no_return_m) << "the corners of a room are no codes";
+    expect_one_drive();
+  }
+  EXPECT_TRUE(tells("--set laser.mount.x_m=0.25 --set laser.mount.y_m=-0.05")) << all_told();
+}
+
+TEST_F(CarmenDefects, AMountThatALogOfCorrectedPosesDoesNotTell) {
+  std::vector<Line> lines = drawn_lines();
+  for (std::size_t i = 0; i < lines.size(); ++i) lines[i].robot_from_laser.x += 0.05 * static_cast<double>(i);
+  look(log_of(lines));
+  EXPECT_FALSE(survey_.robot_from_laser);
+  EXPECT_TRUE(tells("it does not tell the mount")) << all_told();
+}
+
+TEST_F(CarmenDefects, RangesInMillimetresAreDoubted) {
+  std::vector<Line> lines = drawn_lines();
+  for (Line& line : lines) {
+    for (std::string& range : line.ranges) range = text("%.0f", 1000.0 * std::stod(range));
+  }
+  look(log_of(lines));
+  EXPECT_TRUE(tells("has a range that the scanner can measure: are its ranges in mm?")) << all_told();
+}
+
+TEST_F(CarmenDefects, AMiscountInEveryLineIsRefusedByItsLine) {
+  std::vector<Line> lines = drawn_lines();
+  for (Line& line : lines) line.ranges.pop_back();
+  try {
+    look(log_of(lines));
+    FAIL() << "it was read";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("drawn.log:2: 181 ranges announced, 180 there"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(CarmenDefects, WhatStandsApartOrIsOneValueIsNoReturn) {
+  const auto with_far = [&](const std::function<std::string(int)>& value) {
+    std::vector<Line> lines = drawn_lines();
+    for (Line& line : lines) {
+      for (int i = 0; i < 5; ++i) line.ranges[static_cast<std::size_t>(20 + i)] = value(i);
+    }
+    look(log_of(lines));
+    return survey_.no_return_m;
+  };
+  EXPECT_EQ(with_far([](int) { return "30.00"; }), 30.0);
+  EXPECT_EQ(with_far([](int i) { return text("%.2f", 30.0 + 0.02 * i); }), 30.0) << "apart from the room";
+}
+
+}  // namespace
+}  // namespace deltamap::drivers::carmen
