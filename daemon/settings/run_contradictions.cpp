@@ -102,7 +102,7 @@ void add_port_contradictions(const Settings& settings, std::vector<Contradiction
   const std::string& laser = settings.laser.port;
   if (robot.empty()) found.push_back({"robot.port", "must name a serial device", {}});
   if (laser.empty()) found.push_back({"laser.port", "must name a serial device", {}});
-  if (!robot.empty() && is_same(robot, laser))
+  if (!robot.empty() && !laser.empty() && is_same(robot, laser))
     found.push_back({"laser.port", "must not be the same device as 'robot.port'", {"robot.port"}});
 }
 
