@@ -97,7 +97,7 @@ void add_laser(LaserSettings& laser, double& range_deviation_m, Keys& keys) {
   keys.push_back(baud_key("laser.baud", session.baud,
                           {{"9600", 9600}, {"19200", 19200}, {"38400", 38400}, {"500000", 500000}},
                           "baud rate that the laser is brought to"));
-  const std::vector<std::string> variants{"180/1", "180/0.5", "100/1", "100/0.5", "100/0.25"};
+  const std::vector<std::string> variants{"180/1", "180/0.5", "100/1", "100/0.5", "100/0.25", "90/0.5"};
   const auto index_of_variant = [&session, variants] {
     std::size_t index = 0;
     while (index + 1 < variants.size() && drivers::lms200::name_of(session.variant) != variants[index]) ++index;
@@ -116,12 +116,29 @@ void add_laser(LaserSettings& laser, double& range_deviation_m, Keys& keys) {
   keys.push_back(with_symbol(number_key("laser.range_deviation_m", range_deviation_m, "m", 0.001, 1.0,
                                         "standard deviation of a range, laser and what it meets together"),
                              "σ_r"));
+  keys.push_back(bearings_key(
+      "laser.ignored_deg",
+      [&session] {
+        std::vector<double> bearings_deg;
+        for (const auto& one : session.ignored)
+          bearings_deg.insert(bearings_deg.end(), {degrees(one.from_rad), degrees(one.to_rad)});
+        return bearings_deg;
+      },
+      [&session](const std::vector<double>& bearings_deg) {
+        session.ignored.clear();
+        for (std::size_t i = 0; i + 1 < bearings_deg.size(); i += 2)
+          session.ignored.push_back({radians(bearings_deg[i]), radians(bearings_deg[i + 1])});
+      },
+      "bearings of the laser (0 ahead, left above 0) at which it sees the robot's own posts: neither obstacle nor "
+      "map"));
   keys.push_back(number_key("laser.mount.x_m", session.robot_from_laser.x, "m", -5.0, 5.0,
                             "how far the laser is mounted ahead of the middle of the wheel axle"));
   keys.push_back(number_key("laser.mount.y_m", session.robot_from_laser.y, "m", -5.0, 5.0,
                             "how far the laser is mounted left of the middle of the wheel axle"));
   keys.push_back(degrees_key("laser.mount.yaw_deg", session.robot_from_laser.theta, -180.0, 180.0,
                              "how far the laser is mounted turned counter-clockwise"));
+  keys.push_back(flag_key("laser.mount.upside_down", session.is_upside_down,
+                          "the laser is mounted upside down: its values come from left to right"));
 }
 
 /// The mode `patrol` is reserved: naming it gives a reason of its own.

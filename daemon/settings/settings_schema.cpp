@@ -50,6 +50,10 @@ void add_limits(const SettingKey& key, Json& schema) {
       schema["minItems"] = 3;
       schema["maxItems"] = 3;
       return;
+    case Type::kBearings:
+      schema["type"] = "array";
+      schema["items"] = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+      return;
     case Type::kNumber:
     case Type::kWhole:
       schema["type"] = key.type == Type::kWhole ? "integer" : "number";

@@ -44,14 +44,15 @@ Fan fan_of(const ScanVariant& variant) {
   return {variant.first_angle_deg(), variant.resolution_centideg * 0.01, variant.turns()};
 }
 
-std::optional<Fan> fan_of(const Measurement& measurement) {
+std::optional<Fan> fan_of(const Measurement& measurement, const std::optional<ScanVariant>& told) {
   const auto values = static_cast<unsigned>(measurement.words.size());
   if (measurement.is_partial) {
     const unsigned expected = measurement.partial_number == 0 ? kPartialValues : kPartialValues - 1;
     if (values != expected) return std::nullopt;
     return Fan{0.25 * measurement.partial_number, 1.0, 1};
   }
-  const std::optional<ScanVariant> variant = variant_with_values(values);
+  const bool is_as_told = told && told->values() == values && is_possible(*told);
+  const std::optional<ScanVariant> variant = is_as_told ? told : variant_with_values(values);
   return variant ? std::optional{fan_of(*variant)} : std::nullopt;
 }
 
@@ -123,7 +124,7 @@ std::vector<std::uint8_t> encoded_measurement(const Measurement& measurement) {
 std::optional<Scan> scan_from(const Measurement& measurement, const ScanFormat& format, Timestamp first_byte,
                               Timestamp received) {
   const std::optional<RangeCoding> coding = range_coding(format.measuring_mode);
-  const std::optional<Fan> fan = fan_of(measurement);
+  const std::optional<Fan> fan = fan_of(measurement, format.variant);
   if (!coding || !fan) return std::nullopt;
   const double metres_per_word = measurement.metres_per_word();
   const double mode_max_m = coding->beyond_maximum * metres_per_word;
@@ -143,6 +144,10 @@ std::optional<Scan> scan_from(const Measurement& measurement, const ScanFormat& 
     Beam beam = decoded_beam(measurement.words[i], *coding, metres_per_word, scan.max_range_m);
     beam.offset_s = static_cast<float>(fan->offset_s(i));
     scan.beams.push_back(beam);
+  }
+  if (format.is_upside_down && !scan.beams.empty()) {
+    std::reverse(scan.beams.begin(), scan.beams.end());
+    scan.first_bearing_rad = -radians(fan->angle_deg(static_cast<unsigned>(scan.beams.size()) - 1) - kAheadDeg);
   }
   return scan;
 }

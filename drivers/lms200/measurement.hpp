@@ -52,6 +52,8 @@ struct ScanFormat {
   std::uint8_t measuring_mode = 0;  ///< byte 5 of the configuration: the mask follows from it, not from the units (B4)
   double max_range_m = 0.0;         ///< longer ranges become kBeyondMaximum; 0: as far as the mode goes
   Pose2 robot_from_laser{};         ///< the mount
+  bool is_upside_down = false;      ///< mounted so: its values come from left to right
+  std::optional<ScanVariant> variant{};  ///< as the laser has told it; nothing, or one of other values: by their number
 };
 
 /// The scan without its number. nullopt for a mode without ranges and a count of values that belongs to no variant.

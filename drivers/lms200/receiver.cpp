@@ -39,7 +39,7 @@ Receiver::Content Receiver::take(const Telegram& telegram) {
       forget();
       break;
     case response::kVariant:
-      if (const auto reply = decoded_variant_reply(telegram)) variant_ = reply->active;
+      if (const auto reply = decoded_variant_reply(telegram)) take_variant(reply->active, content);
       break;
     case response::kConfiguration:
       take_configuration(decoded_configuration(telegram));
@@ -66,10 +66,19 @@ void Receiver::take_status(const Telegram& telegram, Content& content) {
     return;
   }
   mode_ = status->measuring_mode;
-  variant_ = ScanVariant{status->scan_angle_deg, status->resolution_centideg};
+  take_variant({status->scan_angle_deg, status->resolution_centideg}, content);
   if (status->fault != 0) content.log.push_back("laser reports fault=" + std::to_string(status->fault));
   const std::optional<unsigned> line_baud = status->baud();
   if (is_recording_ && !was_told_baud_ && line_baud) decoder_.set_baud(*line_baud);
+}
+
+/// Values of a fan that nobody knows would be drawn where nothing is.
+void Receiver::take_variant(const ScanVariant& variant, Content& content) {
+  if (variant_ == variant) return;
+  variant_ = variant;
+  if (is_possible(variant)) return;
+  content.warnings.push_back("laser tells variant=" + name_of(variant) +
+                             ", which is not known here: its scans are left out; set it to one of laser.variant");
 }
 
 void Receiver::take_configuration(const std::optional<Configuration>& configuration) {
@@ -89,15 +98,30 @@ void Receiver::take_scan(const Telegram& telegram, Content& content) {
   }
   take_health(measurement->status, content);
   const std::optional<std::uint8_t> measured_in = mode_of_scan(telegram.received);
-  if (!measured_in) return;
-  const ScanFormat format{*measured_in, params_.max_range_m, params_.robot_from_laser};
+  if (!measured_in || (variant_ && !is_possible(*variant_))) return;
+  const ScanFormat format{*measured_in, params_.max_range_m, params_.robot_from_laser, params_.is_upside_down,
+                          variant_.value_or(params_.variant)};
   content.scan = scan_from(*measurement, format, telegram.first_byte, telegram.received);
   if (!content.scan) {
     ++content_counts_.malformed;
     return;
   }
+  ignore_beams(*content.scan);
   content.scan->time = scan_times_.next(content.scan->time, content.scan->received);
   content.scan->number = next_scan_number_++;
+}
+
+/// What stands on the robot is no obstacle, no wall and no evidence, nor is anything seen behind it.
+void Receiver::ignore_beams(Scan& scan) const {
+  constexpr double kRounding_rad = 1e-9;
+  for (const BearingRange& range : params_.ignored) {
+    for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+      const double bearing_rad = scan.bearing_rad(i);
+      if (bearing_rad < range.from_rad - kRounding_rad || bearing_rad > range.to_rad + kRounding_rad) continue;
+      scan.beams[i].kind = BeamKind::kNotValid;
+      scan.beams[i].range_m = 0.0F;
+    }
+  }
 }
 
 void Receiver::take_health(std::uint8_t status, Content& content) {

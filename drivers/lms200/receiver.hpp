@@ -33,6 +33,7 @@ class Receiver {
   struct Content {
     std::optional<Scan> scan;
     std::vector<std::string> log;
+    std::vector<std::string> warnings;
   };
   /// Reads what a telegram says. Each is taken once, before the next is.
   [[nodiscard]] Content take(const Telegram& telegram);
@@ -56,8 +57,10 @@ class Receiver {
 
  private:
   void take_status(const Telegram& telegram, Content& content);
+  void take_variant(const ScanVariant& variant, Content& content);
   void take_configuration(const std::optional<Configuration>& configuration);
   void take_scan(const Telegram& telegram, Content& content);
+  void ignore_beams(Scan& scan) const;
   void take_health(std::uint8_t status, Content& content);
   void forget();
   [[nodiscard]] std::optional<std::uint8_t> mode_of_scan(Timestamp received);

@@ -17,7 +17,7 @@ const Lms200Params& possible_or_throw(const Lms200Params& params) {
   }
   if (!is_possible(params.variant)) {
     throw std::invalid_argument("laser variant " + name_of(params.variant) +
-                                " is unknown: 180/1, 180/0.5, 100/1, 100/0.5 or 100/0.25");
+                                " is unknown: 180/1, 180/0.5, 100/1, 100/0.5, 100/0.25 or 90/0.5");
   }
   if (params.measuring_mode && !range_coding(*params.measuring_mode)) {
     throw std::invalid_argument("laser measuring mode " + std::to_string(*params.measuring_mode) + " has no ranges");
@@ -92,6 +92,7 @@ void Lms200Session::take(const Telegram& telegram, Lms200Output& out) {
   Receiver::Content content = receiver_.take(telegram);
   if (content.scan) out.scans.push_back(std::move(*content.scan));
   std::move(content.log.begin(), content.log.end(), std::back_inserter(out.output.log));
+  std::move(content.warnings.begin(), content.warnings.end(), std::back_inserter(out.output.warnings));
 }
 
 void Lms200Session::answer(const Telegram& telegram, Transmitter& line, SessionOutput& out) {

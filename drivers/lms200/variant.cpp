@@ -18,6 +18,7 @@ constexpr auto kVariants = std::to_array<NamedVariant>({
     {"100/1", {100, 100}},
     {"100/0.5", {100, 50}},
     {"100/0.25", {100, 25}},
+    {"90/0.5", {90, 50}},
 });
 
 template <typename Predicate>

@@ -166,7 +166,10 @@ bool VirtualLms200::can_send(const lms200::ValueSelection& selection) const {
 
 VirtualLms200::Answer VirtualLms200::variant_answer(const lms200::Telegram& telegram, Timestamp now) {
   const auto wanted = lms200::requested_variant(telegram);
-  const bool possible = wanted && lms200::is_possible(*wanted);
+  // Only an LMS Fast measures 90 degrees, and nothing else.
+  const bool possible =
+      wanted &&
+      (wanted == variant_ || (!setup_.has_fixed_variant && wanted->angle_deg != 90 && lms200::is_possible(*wanted)));
   if (possible) variant_ = *wanted;
   return {now + duration_from_seconds(kVariantDelay_s), lms200::variant_reply(possible, variant_), {}};
 }

@@ -25,6 +25,7 @@ struct Lms200Setup {
   unsigned baud = 9600;         ///< after power-on
   bool permanent_baud = false;  ///< keeps its baud over a power cycle (66h)
   drivers::lms200::ScanVariant variant{180, 50};
+  bool has_fixed_variant = false;  ///< refuses every other, as an LMS Fast does
   drivers::lms200::Units units = drivers::lms200::Units::kCentimetre;
   std::uint8_t measuring_mode = 0x00;  ///< B4 byte 5
   double start_up_s = 3.0;             ///< of silence after power-on or reset, until 90h; the real one up to 60

@@ -88,6 +88,7 @@ std::string limits_of(const SettingKey& key) {
   using Type = SettingKey::Type;
   if (key.type == Type::kFlag) return "true or false";
   if (key.type == Type::kPose) return "[x m, y m, heading degrees] or null";
+  if (key.type == Type::kBearings) return "[[from, to], …] degrees, from below to, -180 to 180";
   std::string limits = key.unit;
   for (const std::string& word : key.words) limits += (limits.empty() ? "" : " | ") + word;
   const std::string range = range_in_words(key);
@@ -159,6 +160,34 @@ SettingKey pose_key(std::string name, std::optional<Pose2>& field, std::string m
       return limits;
     }
     field = Pose2{numbers[0], numbers[1], wrapped_angle(radians(numbers[2]))};
+    return std::nullopt;
+  };
+  return key;
+}
+
+SettingKey bearings_key(std::string name, std::function<std::vector<double>()> read_deg,
+                        std::function<void(const std::vector<double>&)> write_deg, std::string meaning) {
+  SettingKey key{
+      .type = SettingKey::Type::kBearings, .name = std::move(name), .meaning = std::move(meaning), .unit = "degrees"};
+  key.text = [read_deg = std::move(read_deg)] {
+    const std::vector<double> bearings_deg = read_deg();
+    std::string text;
+    for (std::size_t i = 0; i + 1 < bearings_deg.size(); i += 2)
+      text += (i == 0 ? "[" : ", [") + rounded(bearings_deg[i]) + ", " + rounded(bearings_deg[i + 1]) + "]";
+    return "[" + text + "]";
+  };
+  key.assign = [limits = limits_of(key),
+                write_deg = std::move(write_deg)](const SettingValue& value) -> std::optional<std::string> {
+    if (value.kind != SettingValue::Kind::kList) return limits;
+    std::vector<double> numbers;
+    for (const std::string& pair : value.items) {  // as the reader has it: "from to"
+      const std::size_t gap = std::min(pair.find(' '), pair.size());
+      const auto from = number_in({SettingValue::Kind::kScalar, {pair.substr(0, gap)}});
+      const auto to = number_in({SettingValue::Kind::kScalar, {pair.substr(std::min(gap + 1, pair.size()))}});
+      if (!from || !to || *from < -180.0 || *to > 180.0 || *from >= *to) return limits;
+      numbers.insert(numbers.end(), {*from, *to});
+    }
+    write_deg(numbers);
     return std::nullopt;
   };
   return key;

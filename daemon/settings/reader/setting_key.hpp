@@ -24,7 +24,7 @@ struct SettingValue {
 };
 
 struct SettingKey {
-  enum class Type : std::uint8_t { kNumber, kWhole, kFlag, kText, kWord, kPose } type = Type::kText;
+  enum class Type : std::uint8_t { kNumber, kWhole, kFlag, kText, kWord, kPose, kBearings } type = Type::kText;
   std::string name;                  ///< "laser.mount.x_m"
   std::string meaning{};             ///< one line that stands alone
   std::string unit{};                ///< of a number: "m/s"; empty: none
@@ -51,6 +51,9 @@ struct SettingKey {
 [[nodiscard]] SettingKey text_key(std::string name, std::string& field, std::string meaning);
 /// [x m, y m, heading deg], or null for none.
 [[nodiscard]] SettingKey pose_key(std::string name, std::optional<Pose2>& field, std::string meaning);
+/// A list of pairs of bearings in degrees, from and to; empty for none.
+[[nodiscard]] SettingKey bearings_key(std::string name, std::function<std::vector<double>()> read_deg,
+                                      std::function<void(const std::vector<double>&)> write_deg, std::string meaning);
 /// One word of several; those that look like numbers are numbers in the file. `read` answers the index of the present
 /// one.
 [[nodiscard]] SettingKey word_key(std::string name, std::vector<std::string> words, std::function<std::size_t()> read,

@@ -145,8 +145,10 @@ class Walk {
     if (node.IsSequence()) {
       value.kind = SettingValue::Kind::kList;
       for (const auto& item : node) {
-        if (!item.IsScalar()) return add(key.name, node, named, "takes no nested lists");
-        value.items.push_back(item.Scalar());
+        const bool is_pair = key.type == SettingKey::Type::kBearings && item.IsSequence() && item.size() == 2 &&
+                             item[0].IsScalar() && item[1].IsScalar();
+        if (!item.IsScalar() && !is_pair) return add(key.name, node, named, "takes no nested lists");
+        value.items.push_back(is_pair ? item[0].Scalar() + " " + item[1].Scalar() : item.Scalar());
       }
     }
     read_.places[key.name] = place_of(node, named);

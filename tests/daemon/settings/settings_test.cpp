@@ -210,5 +210,18 @@ TEST(Settings, TheFingerprintFollowsWhatDecidesResultsAndNothingElse) {
   EXPECT_NE(settings_fingerprint(parse_settings("localization: {initial_pose: [0, 0, 0]}", "f")), before);
 }
 
+TEST(Settings, TakeIgnoredBearingsInPairs) {
+  const auto ignored = [](const std::string& text) {
+    return parse_settings("laser:\n  ignored_deg: " + text + "\n", "f", {}).laser.session.ignored;
+  };
+  const auto two = ignored("[[-32, -28], [88, 90]]");
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_NEAR(two[0].from_rad, radians(-32.0), 1e-12);
+  EXPECT_NEAR(two[1].to_rad, radians(90.0), 1e-12);
+  EXPECT_TRUE(ignored("[]").empty());
+  for (const char* bad : {"[[10, -10]]", "[10, 20]", "[[10, 20, 30]]", "[[170, 190]]"})
+    EXPECT_THROW((void)ignored(bad), SettingsError) << bad;
+}
+
 }  // namespace
 }  // namespace deltamap::daemon

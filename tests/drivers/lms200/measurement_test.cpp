@@ -65,6 +65,37 @@ TEST(ScanFromMeasurement, PointsItsBeamsCounterClockwiseAroundStraightAhead) {
   EXPECT_NEAR(narrow.bearing_rad(400), radians(50.0), kAngleTolerance);
 }
 
+TEST(ScanFromMeasurement, PointsItsBeamsAsTheLaserHasToldItsVariant) {
+  const auto bearings_deg = [](unsigned values, const ScanVariant& told) {
+    const Scan scan = scan_of(measurement_of(values), {.variant = told});
+    return std::pair{degrees(scan.bearing_rad(0)), degrees(scan.bearing_rad(values - 1))};
+  };
+  const auto expect = [&](unsigned values, const ScanVariant& told, double half_deg) {
+    const auto [first_deg, last_deg] = bearings_deg(values, told);
+    EXPECT_NEAR(first_deg, -half_deg, 1e-9) << name_of(told);
+    EXPECT_NEAR(last_deg, half_deg, 1e-9) << name_of(told);
+  };
+  expect(181, {90, 50}, 45.0);
+  expect(181, {180, 100}, 90.0);
+  expect(401, {100, 25}, 50.0);
+  expect(361, {90, 50}, 90.0);  // of other values: by their number
+}
+
+TEST(ScanFromMeasurement, TurnsTheScanOfALaserThatHangsUpsideDown) {
+  for (const unsigned values : {101u, 181u, 361u, 401u}) {
+    Measurement measurement = measurement_of(values);
+    measurement.words[10] = 700;  // the eleventh from its own right, which is the robot's left
+    const Scan upright = scan_of(measurement);
+    const Scan hanging = scan_of(measurement, {.is_upside_down = true});
+    ASSERT_EQ(hanging.beams.size(), values);
+    for (unsigned i = 0; i < values; ++i) {
+      EXPECT_EQ(hanging.beams[i].range_m, upright.beams[values - 1 - i].range_m);
+      EXPECT_EQ(hanging.beams[i].offset_s, upright.beams[values - 1 - i].offset_s) << "its own time";
+      EXPECT_NEAR(hanging.bearing_rad(i), -upright.bearing_rad(values - 1 - i), kAngleTolerance);
+    }
+  }
+}
+
 TEST(ScanFromMeasurement, DatesTheScanBackByItsDuration) {
   const auto expect_duration = [](std::size_t values, double duration_s) {
     const Scan scan = scan_of(measurement_of(values));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/status.hpp"
@@ -60,6 +62,59 @@ TEST(Receiver, KnowsWhatTheLaserHasSaidUntilItIsStartedUpAnew) {
   ASSERT_EQ(telegrams.size(), 1u);
   EXPECT_EQ(receiver.take(telegrams[0]).log, std::vector<std::string>{"laser has started up"});
   EXPECT_FALSE(receiver.measuring_mode() || receiver.variant() || receiver.configuration());
+}
+
+TEST(Receiver, PointsBeamsByTheVariantThatTheLaserTells) {
+  Receiver receiver{Lms200Params{.variant = {180, 100}}, SessionMode::kLive};
+  DeviceStatus status;
+  status.scan_angle_deg = 90;
+  status.resolution_centideg = 50;
+  (void)scans_of(receiver, status_reply(status));
+  const Scan by_status = scans_of(receiver, scan_telegram()).at(0);
+  EXPECT_NEAR(degrees(by_status.first_bearing_rad), -45.0, 1e-9);
+  EXPECT_NEAR(degrees(by_status.bearing_step_rad), 0.5, 1e-9);
+  (void)scans_of(receiver, variant_reply(true, {180, 100}));
+  EXPECT_NEAR(degrees(scans_of(receiver, scan_telegram()).at(0).first_bearing_rad), -90.0, 1e-9);
+}
+
+TEST(Receiver, AnswersNoScanOfAVariantThatItDoesNotKnowAndWarnsOnce) {
+  Receiver receiver{Lms200Params{}, SessionMode::kLive};
+  std::vector<std::string> warnings;
+  const auto take = [&](const Bytes& bytes) {
+    std::size_t scans = 0;
+    for (const Telegram& telegram : receiver.decode(bytes, kNow).telegrams) {
+      const Receiver::Content content = receiver.take(telegram);
+      warnings.insert(warnings.end(), content.warnings.begin(), content.warnings.end());
+      scans += content.scan ? 1 : 0;
+    }
+    return scans;
+  };
+  DeviceStatus status;
+  status.scan_angle_deg = 90;
+  status.resolution_centideg = 25;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(take(status_reply(status)), 0u);
+    EXPECT_EQ(take(scan_telegram(361)), 0u);
+  }
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].find("laser tells variant=90/25e-2, which is not known here"), 0u) << warnings[0];
+  EXPECT_EQ(take(variant_reply(true, {180, 50})), 0u);
+  EXPECT_EQ(take(scan_telegram(361)), 1u);
+}
+
+TEST(Receiver, TakesTheBeamsOfIgnoredBearingsForNotValid) {
+  for (const bool is_upside_down : {false, true}) {
+    Receiver receiver{Lms200Params{.is_upside_down = is_upside_down,
+                                   .ignored = {{radians(-30.0), radians(-20.0)}, {radians(88.0), radians(180.0)}}},
+                      SessionMode::kLive};
+    (void)scans_of(receiver, status_reply(DeviceStatus{}));
+    const Scan scan = scans_of(receiver, scan_telegram()).at(0);
+    for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+      const long bearing_deg = std::lround(degrees(scan.bearing_rad(i)));
+      const bool is_ignored = (bearing_deg >= -30 && bearing_deg <= -20) || bearing_deg >= 88;
+      EXPECT_EQ(scan.beams[i].kind, is_ignored ? BeamKind::kNotValid : BeamKind::kRange) << bearing_deg;
+    }
+  }
 }
 
 TEST(Receiver, WantsTheConfigurationOfTheLaserButForUnitsAndMode) {

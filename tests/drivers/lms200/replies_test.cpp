@@ -118,13 +118,16 @@ TEST(Password, IsComparedWhole) {
   EXPECT_FALSE(has_right_password(from_host(installation_request("SICK_LMT"))));
 }
 
-TEST(ScanVariant, HasFiveForms) {
+TEST(ScanVariant, HasSixFormsOfWhichTwoHaveAsManyValues) {
   for (const char* name : {"180/1", "180/0.5", "100/1", "100/0.5", "100/0.25"}) {
     const auto variant = variant_named(name);
     ASSERT_TRUE(variant) << name;
     EXPECT_EQ(name_of(*variant), name);
     EXPECT_EQ(variant_with_values(variant->values()), variant);
   }
+  const ScanVariant fast = variant_named("90/0.5").value();
+  EXPECT_EQ(name_of(fast), "90/0.5");
+  EXPECT_EQ(variant_with_values(fast.values()), (ScanVariant{180, 100})) << "unless the laser tells otherwise";
   EXPECT_FALSE(variant_named("180/0.25"));
   EXPECT_FALSE(is_possible({180, 25}));
   EXPECT_FALSE(variant_with_values(180));

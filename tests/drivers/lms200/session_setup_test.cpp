@@ -97,6 +97,15 @@ TEST_F(Lms200SessionTest, StreamsTheOldVariantWhereTheWantedOneIsRefused) {
   EXPECT_TRUE(line.has_logged("refuses variant=180/0.5: keeps 180/1"));
 }
 
+TEST_F(Lms200SessionTest, PointsTheBeamsOfAnLmsFastWhichRefusesOtherVariants) {
+  laser.refuses_variant = true;
+  laser.variant = {90, 50};
+  ASSERT_TRUE(stream());
+  EXPECT_EQ(line.messages.back().beams.size(), 181u);
+  EXPECT_NEAR(degrees(line.messages.back().first_bearing_rad), -45.0, 1e-9);
+  EXPECT_TRUE(line.has_logged("refuses variant=180/0.5: keeps 90/0.5"));
+}
+
 TEST_F(Lms200SessionTest, ReadsRangesRightlyWhereTheConfigurationIsRefused) {
   laser.refuses_write = true;
   ASSERT_TRUE(stream(60.0));

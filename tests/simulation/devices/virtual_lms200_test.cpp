@@ -75,6 +75,19 @@ TEST(VirtualLms200, AcknowledgesThenAnswersTheStatus) {
   EXPECT_EQ(status->baud(), 9600u);
 }
 
+TEST(VirtualLms200, OfAnLmsFastKeepsItsVariant) {
+  Lms200Rig rig{{.variant = {90, 50}, .has_fixed_variant = true}};
+  for (const char* name : {"180/1", "180/0.5", "100/1", "100/0.5", "100/0.25", "90/0.5"}) {
+    const auto answers = rig.ask(lms200::variant_request(lms200::variant_named(name).value()), 2.0);
+    const auto reply = lms200::decoded_variant_reply(answers.at(1));
+    ASSERT_TRUE(reply) << name;
+    EXPECT_EQ(reply->accepted, std::string(name) == "90/0.5") << name;
+    EXPECT_EQ(lms200::name_of(reply->active), "90/0.5");
+  }
+  EXPECT_FALSE(lms200::decoded_variant_reply(Lms200Rig{}.ask(lms200::variant_request({90, 50}), 2.0).at(1))->accepted)
+      << "others do not have it";
+}
+
 TEST(VirtualLms200, RefusesADamagedTelegramWithNakAndIgnoresOtherAddresses) {
   Lms200Rig rig;
   auto damaged = lms200::status_request();
