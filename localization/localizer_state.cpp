@@ -111,23 +111,13 @@ void Localizer::State::take(const Odometry& report) {
 }
 
 motion::ScanInstant Localizer::State::witnessed(const Scan& scan, std::span<const RayInRobot> rays) {
-  motion::ScanInstant now{scan.time, odometry.at(scan.time)};
-  std::optional<odometer::WheelsAt> wheels;
-  if (now.odometry) wheels = {now.odometry->continuous_odom_from_robot, now.odometry->epoch};
-  const odometer::LaserMotion seen = odometer.observe(scan, rays, wheels);
-  if (seen.slip) {
-    odometry.correct(scan.time, *seen.slip,
-                     {0.5 * seen.covariance.topLeftCorner<2, 2>().trace(), seen.covariance(2, 2)});
-    now.odometry = odometry.at(scan.time);
-  }
+  const odometer::LaserMotion seen = witness.observe(scan, rays, odometry, odometry);
   stood_m = seen.stood_m;
   judgement.carry({.is_continued = covers_the_gap(now),
                    .fits_before = !seen.is_lost && !seen.contradicts,
                    .driven_m = seen.motion.position().norm()});
   counts.wheels_contradicted += seen.contradicts ? 1 : 0;
-  if (last_scan && !seen.is_lost) wheel_lag.observe(*last_scan, scan.time, seen.by_laser.theta, odometry);
-  if (const std::optional<double> lag_s = wheel_lag.lag_s()) odometry.set_lag(*lag_s);
-  return now;
+  return {scan.time, odometry.at(scan.time)};
 }
 
 bool Localizer::State::has_jumped(const motion::ScanInstant& now) const {

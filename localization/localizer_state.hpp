@@ -14,8 +14,7 @@
 #include "localization/hypotheses/hypothesis_tracker.hpp"
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
-#include "localization/odometer/laser_odometer.hpp"
-#include "localization/odometer/wheel_lag.hpp"
+#include "localization/odometer/scan_witness.hpp"
 #include "localization/surfaces/faced_scan.hpp"
 #include "localization/tracking/tracker.hpp"
 
@@ -29,8 +28,7 @@ struct Localizer::State {
   std::uint32_t revision = 0;
   sensor::LikelihoodField field;
   motion::OdometryBuffer odometry;
-  odometer::LaserOdometer odometer;
-  odometer::WheelLag wheel_lag;
+  odometer::ScanWitness witness;
   tracking::Tracker tracker;
   belief::FitMonitor monitor;
   belief::Judgement judgement;

@@ -3,41 +3,36 @@
 
 #include <utility>
 
-#include "localization/motion/deskew.hpp"
-
 namespace deltamap::daemon {
-namespace {
-
-constexpr double kMostUncoveredS = 1.0;  // between a scan and the nearest report of the wheels
-
-}  // namespace
 
 SurveyStep::SurveyStep(const Settings& settings)
-    : odometry_params_{settings.localizer.odometry},
-      range_deviation_m_{settings.localizer.range_deviation_m},
-      odometry_{odometry_params_} {}
+    : odometry_params_{settings.localizer.odometry}, range_deviation_m_{settings.localizer.range_deviation_m} {}
 
 void SurveyStep::begin_drive() {
-  odometry_ = localization::motion::OdometryBuffer{odometry_params_};
+  (void)end_drive();
+  scans_before_ = scans_.size();
+  odometry_.emplace(odometry_params_, range_deviation_m_,
+                    [this](surveying::slam::MovedScan&& moved) { take(std::move(moved)); });
   slam_.begin_drive();
 }
 
-bool SurveyStep::observe(Scan scan) {
-  if (!scans_.empty() && scan.time < scans_.back().time) odometry_.clock_fell_back(scans_.back().time);
-  const auto wheels = odometry_.at(scan.time);
-  if (!wheels || wheels->uncovered_s > kMostUncoveredS) return false;
-  TrackedScan tracked;
-  scan.range_deviation_m = range_deviation_m_;
-  tracked.rays = localization::motion::deskewed(scan, odometry_.velocity_at(scan.time));
-  tracked.odom_from_robot = wheels->continuous_odom_from_robot;
-  tracked.odometry_epoch = wheels->epoch;
-  const Timestamp time = scan.time;
-  tracked.scan = std::move(scan);
-  slam_.observe(std::move(tracked));
+std::size_t SurveyStep::end_drive() {
+  if (odometry_) odometry_->end();
+  return scans_.size() - scans_before_;
+}
+
+bool SurveyStep::finish() {
+  (void)end_drive();
+  return slam_.finish();
+}
+
+void SurveyStep::take(surveying::slam::MovedScan&& moved) {
+  const Timestamp time = moved.tracked.scan.time;
+  const Pose2 start_from_robot = moved.tracked.odom_from_robot;
+  slam_.observe(std::move(moved));
   const auto& keyframes = slam_.survey().keyframes;
   scans_.push_back({time, static_cast<std::uint32_t>(keyframes.size() - 1),
-                    motion_between(keyframes.back().tracked->odom_from_robot, wheels->continuous_odom_from_robot)});
-  return true;
+                    motion_between(keyframes.back().tracked->odom_from_robot, start_from_robot)});
 }
 
 std::vector<TrajectoryPoint> SurveyStep::trajectory() const {

@@ -4,6 +4,7 @@
 // meanwhile.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -73,6 +74,7 @@ void survey_world(std::uint64_t seed, double minutes, Surveyed& surveyed) {
   Random random{seed};
   std::optional<Timestamp> began;
   bool is_second = false;
+  std::map<Timestamp, Pose2> true_poses;
   surveyed.step.begin_drive();
   for (;;) {
     simulation::DriveStep now = drive.next();
@@ -86,14 +88,15 @@ void survey_world(std::uint64_t seed, double minutes, Surveyed& surveyed) {
       surveyed.step.begin_drive();
     } else {
       for (const Odometry& odometry : now.odometry) surveyed.step.observe(odometry);
-      (void)surveyed.step.observe(std::move(now.scan));
-    }
-    if (surveyed.truth.size() < surveyed.step.slam().survey().keyframes.size()) {
-      surveyed.truth.push_back(now.map_from_robot);
+      true_poses.emplace(now.scan.time, now.map_from_robot);
+      surveyed.step.observe(std::move(now.scan));
     }
   }
   const daemon::CpuTimer timer{surveyed.cpu_s};
   if (!surveyed.step.finish()) throw std::runtime_error("first-map: the pose graph of a seed does not settle");
+  for (const surveying::slam::Keyframe& keyframe : surveyed.step.slam().survey().keyframes) {
+    surveyed.truth.push_back(true_poses.at(keyframe.tracked->scan.time));
+  }
 }
 
 /// Loops, and those of them that the truth contradicts.

@@ -60,18 +60,25 @@ constexpr WheelNoise kUsual{0.005, 0.04, 0.02, 0.01, 0.02, 0.004, 0.06, 0.02};
 constexpr WheelNoise kLoose{0.05, 0.3, 0.15, 0.0, 0.0, 0.03, 0.2, 0.05};
 constexpr double kLooseShare = 0.3;
 
-PoseCovariance turned(const PoseCovariance& covariance, double by_rad) {
+Eigen::Matrix3d rotation(double by_rad) {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   rotation.topLeftCorner<2, 2>() << std::cos(by_rad), -std::sin(by_rad), std::sin(by_rad), std::cos(by_rad);
-  return rotation * covariance * rotation.transpose();
+  return rotation;
 }
 
-/// A pose's covariance after a motion that leads it from here to there.
-PoseCovariance carried(const PoseCovariance& covariance, const Pose2& from, const Pose2& to) {
+PoseCovariance turned(const PoseCovariance& covariance, double by_rad) {
+  return rotation(by_rad) * covariance * rotation(-by_rad);
+}
+
+/// What a pose's error becomes by a motion that leads it from here to there.
+Eigen::Matrix3d carrying(const Pose2& from, const Pose2& to) {
   Eigen::Matrix3d by_start = Eigen::Matrix3d::Identity();
   by_start(0, 2) = from.y - to.y;
   by_start(1, 2) = to.x - from.x;
-  return by_start * covariance * by_start.transpose();
+  return by_start;
+}
+PoseCovariance carried(const PoseCovariance& covariance, const Pose2& from, const Pose2& to) {
+  return carrying(from, to) * covariance * carrying(from, to).transpose();
 }
 
 bool is_a_drive(const Pose2& motion, double passed_s) {
@@ -196,6 +203,7 @@ void LaserOdometer::stand(LaserMotion& answer, const Step& step) {
   answer.inliers = 1.0;
   pose_ = anchor_.start_from_robot;
   deviation_ = anchor_.deviation;
+  answer.deviation = turned(deviation_, -pose_.theta);
   last_motion_ = {};
   map_.forget_since(anchor_.time_s);
   distrusted_until_s_ = time_s_ + kWindowsS.back();
@@ -292,6 +300,8 @@ void LaserOdometer::believe(const ScanFit& fitted, const Step& step, LaserMotion
   answer.covariance = turned(kept * wheel_noise, -pose_.theta);
   answer.by_laser = motion_between(pose_, fitted.map_from_robot);
   answer.laser_covariance = turned(fitted.covariance, -pose_.theta);
+  answer.deviation = turned(deviation_, -believed.theta);
+  answer.kept = rotation(-believed.theta) * kept * carrying(pose_, predicted) * rotation(pose_.theta);
   pose_ = believed;
   if (answer.is_lost) return;
   if (step.by_wheels && time_s_ <= distrusted_until_s_) {

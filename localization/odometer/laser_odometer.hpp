@@ -30,6 +30,10 @@ struct LaserMotion {
   PoseCovariance covariance = PoseCovariance::Zero();
   Pose2 by_laser;  ///< by the scans alone
   PoseCovariance laser_covariance = PoseCovariance::Zero();
+  /// Of the pose among what the last metres have shown, in the robot's frame; and what is left in its error of the
+  /// error of the pose before. Errors are (x, y, θ), each in the robot's frame at its time.
+  PoseCovariance deviation = PoseCovariance::Zero();
+  Eigen::Matrix3d kept = Eigen::Matrix3d::Identity();
   double disagreement = 0.0;  ///< squared deviations between wheels and scans, of the step or of the last 1.5 s
   bool contradicts = false;   ///< the wheels are wrong
   /// Where it contradicts, and for a while after that, for what wheels have left out they may bring later: where the

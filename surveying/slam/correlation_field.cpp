@@ -69,6 +69,11 @@ class BranchAndBound {
             wrapped_angle(rotations_[leaf.rotation].heading_rad)};
   }
 
+  [[nodiscard]] bool is_at_rim(const Branch& leaf) const {
+    return std::abs(leaf.column) == reach_ || std::abs(leaf.row) == reach_ || leaf.rotation == 0 ||
+           leaf.rotation + 1 == rotations_.size();
+  }
+
  private:
   /// 0 where it cannot be above `least`.
   [[nodiscard]] std::uint32_t sum_of(int level, std::size_t rotation, int column, int row, std::uint32_t least) const {
@@ -198,7 +203,7 @@ std::optional<CorrelativeMatch> best_match(const CorrelationField& field, std::s
   const BranchAndBound search{field, ends, window};
   const std::optional<Branch> best = search.best(static_cast<std::uint32_t>(least_score * full), nullptr);
   if (!best) return std::nullopt;
-  CorrelativeMatch match{search.pose_of(*best), best->bound / full, 0.0};
+  CorrelativeMatch match{search.pose_of(*best), best->bound / full, search.is_at_rim(*best), 0.0};
   if (near_share >= 1.0) return match;
   if (const auto other = search.best(static_cast<std::uint32_t>(near_share * best->bound), &*best)) {
     match.elsewhere = other->bound / full;

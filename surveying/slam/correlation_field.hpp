@@ -60,6 +60,7 @@ struct SearchWindow {
 struct CorrelativeMatch {
   Pose2 field_from_scan;
   double score = 0.0;      ///< mean likelihood of the scan's ends, [0, 1]
+  bool is_at_rim = false;  ///< of the window: beyond it others may be better
   double elsewhere = 0.0;  ///< score of the best pose that is not the same place, where it comes near; else 0
 };
 

@@ -18,11 +18,9 @@ constexpr double kLoopEndEachM = 0.15;  // squares that hold one end of it
 constexpr double kReferenceM = 6.0;     // of the older way, before and after
 constexpr double kSeesM = 4.0;          // keyframes so near to each other see the same surfaces
 constexpr std::size_t kMostTried = 3;   // older ways at one search
-constexpr double kMostWindowM = 8.0;    // beyond, whatever the graph says
-constexpr double kMostWindowRad = 1.0;
+constexpr double kMostWindowRad = 1.0;  // whatever the graph says
 constexpr double kLeastWindowM = 0.3;
 constexpr double kLeastWindowRad = 0.05;
-constexpr double kDeviations = 3.0;
 constexpr double kConfirmedM = 6.0;  // driven between two loops that may confirm each other
 constexpr double kSameM = 0.3;       // between what these say
 constexpr double kSameRad = 0.05;
@@ -62,8 +60,7 @@ std::vector<std::uint32_t> LoopClosing::candidates(std::uint32_t node,
   std::vector<std::uint32_t> near;
   for (std::uint32_t other = 0; other < node; ++other) {
     if (!known[other] || !is_way_back(node, other)) continue;
-    const double unsure_m = kDeviations * widest_deviation_m(*known[other]);
-    if (away_m(other) <= kSeesM + std::min(unsure_m, kMostWindowM)) near.push_back(other);
+    if (away_m(other) <= kSeesM + window_of({}, *known[other]).position_m) near.push_back(other);
   }
   std::stable_sort(near.begin(), near.end(), [&](auto a, auto b) { return away_m(a) < away_m(b); });
   std::vector<std::uint32_t> chosen;
@@ -88,9 +85,9 @@ void LoopClosing::search(std::uint32_t node) {
     const Pose2 node_from_other = motion_between(survey_.poses[node], survey_.poses[other]);
     const Pose2 expected = inverse(node_from_other);
     const PoseCovariance unsure = inverted_covariance(node_from_other, *known[other]);
-    const SearchWindow window{expected,
-                              std::min(kMostWindowM, kDeviations * widest_deviation_m(unsure) + kLeastWindowM),
-                              std::min(kMostWindowRad, kDeviations * std::sqrt(unsure(2, 2)) + kLeastWindowRad)};
+    SearchWindow window = window_of(expected, unsure);
+    window.position_m += kLeastWindowM;
+    window.heading_rad = std::min(kMostWindowRad, window.heading_rad + kLeastWindowRad);
     const SubmapMatcher matcher{
         submap(survey_, back_by(survey_, other, kReferenceM), on_by(survey_, other, kReferenceM), other, 0.0),
         window.position_m};

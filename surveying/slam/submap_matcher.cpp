@@ -9,9 +9,13 @@
 #include <numbers>
 #include <utility>
 
+#include "core/geometry/pose_spread.hpp"
+
 namespace deltamap::surveying::slam {
 namespace {
 
+constexpr double kDeviations = 3.0;   // in which a scan is searched
+constexpr double kMostWindowM = 8.0;  // whatever is known
 constexpr double kCorrelationCellM = 0.1;
 constexpr int kMostLevels = 7;
 constexpr std::size_t kMostCorrelated = 500;  // ends of a scan, evenly
@@ -63,6 +67,11 @@ PoseCovariance covariance_of(const Eigen::Matrix3d& by_ends, const Eigen::Matrix
 
 }  // namespace
 
+SearchWindow window_of(const Pose2& expected, const PoseCovariance& unsure) {
+  return {expected, std::min(kMostWindowM, kDeviations * widest_deviation_m(unsure)),
+          std::min(std::numbers::pi, kDeviations * std::sqrt(unsure(2, 2)))};
+}
+
 SubmapMatcher::SubmapMatcher(Submap submap, double reach_m)
     : everywhere_{window_around(submap.ends)},
       field_{submap.ends, kCorrelationCellM, levels_for(reach_m)},
@@ -79,6 +88,7 @@ std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, do
   if (!known.information.isZero() &&
       best_match(field_, some, {window.centre, 0.0, 0.0}, kFlatShare * found->score, 1.0)) {
     found->field_from_scan = window.centre;
+    found->is_at_rim = false;
   }
   // Ends share errors: what was known before weighs as much more.
   const mapping::registration::Registration refined = mapping::registration::registration(
@@ -92,7 +102,7 @@ std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, do
                     std::abs(correction.theta) <= kMostCorrectionRad;
   if (!fits) return std::nullopt;
   return SubmapMatch{refined.reference_from_moving, covariance_of(refined.information, known.information, params),
-                     found->score};
+                     found->score, found->is_at_rim};
 }
 
 }  // namespace deltamap::surveying::slam

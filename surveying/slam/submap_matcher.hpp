@@ -25,7 +25,11 @@ struct SubmapMatch {
   Pose2 submap_from_scan;
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of its (x, y, θ), together with what was known before
   double score = 0.0;
+  bool is_at_rim = false;  ///< of the window, beyond which the scan may fit better
 };
+
+/// Around where a scan is expected, as far as that may be off.
+[[nodiscard]] SearchWindow window_of(const Pose2& expected, const PoseCovariance& unsure);
 
 class SubmapMatcher {
  public:

@@ -50,10 +50,10 @@ struct SurveyedDrive {
 SurveyedDrive surveyed(const std::string& recording, const daemon::Settings& settings, daemon::SurveyStep& survey) {
   SurveyedDrive drive{recording};
   survey.begin_drive();
-  const daemon::RecordingDecoder::Sinks sinks{
-      [&](Odometry&& odometry, std::uint32_t) { survey.observe(odometry); },
-      [&](Scan&& scan) { drive.scans += survey.observe(std::move(scan)) ? 1 : 0; }};
+  const daemon::RecordingDecoder::Sinks sinks{[&](Odometry&& odometry, std::uint32_t) { survey.observe(odometry); },
+                                              [&](Scan&& scan) { survey.observe(std::move(scan)); }};
   drive.faults = read_messages(recording, settings, sinks, "surveying " + fs::path{recording}.filename().string());
+  drive.scans = survey.end_drive();
   if (drive.scans == 0) {
     const std::vector<std::string> lines = drive.faults.lines();
     throw std::runtime_error((lines.empty() ? recording : lines.front()) + ": no scan for which odometry is known");
@@ -136,7 +136,7 @@ Json built_as_json(const std::string& map, const std::vector<SurveyedDrive>& dri
           {"occupied_cells", count_of(grid, CellState::kOccupied)},
           {"free_cells", count_of(grid, CellState::kFree)},
           {"keyframes", survey.keyframes.size()},
-          {"keyframes_by_wheels_alone", survey.keyframes.size() - drives.size() - slam.matched()},
+          {"keyframes_by_odometry_alone", survey.keyframes.size() - drives.size() - slam.matched()},
           {"loops",
            std::count_if(survey.links.begin(), survey.links.end(), [](const auto& link) { return link.may_drop; })},
           {"loops_contradicted", slam.loops().contradicted()},
@@ -146,7 +146,7 @@ Json built_as_json(const std::string& map, const std::vector<SurveyedDrive>& dri
 void print_built(const Json& built) {
   std::cout << built["map"].get<std::string>() << ": " << built["width"] << " x " << built["height"] << " cells of "
             << built["resolution_m"].get<double>() << " m, from " << built["keyframes"] << " keyframes ("
-            << built["keyframes_by_wheels_alone"] << " placed by the wheels alone) and " << built["loops"]
+            << built["keyframes_by_odometry_alone"] << " placed by odometry alone) and " << built["loops"]
             << " loops\n";
   for (const Json& drive : built["drives"]) {
     std::cout << drive["recording"].get<std::string>() << ": " << drive["scans"] << " scans, " << std::fixed

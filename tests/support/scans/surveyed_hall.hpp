@@ -63,4 +63,54 @@ inline std::vector<TrackedScan> surveyed(const OccupancyGrid& hall, const std::v
   return scans;
 }
 
+/// What wheels tell wrongly: once, in the middle of the way, they slip; all their stamps are late.
+struct WrongWheels {
+  Pose2 slip;
+  double lag_s = 0.0;
+};
+
+/// The messages of a drive in the order of their stamps: a scan each 0.2 s and the wheels' reports each 0.05 s.
+struct DriveMessages {
+  std::vector<Odometry> odometry;
+  std::vector<Scan> scans;
+
+  template <typename Taker>
+  void give(Taker& taker) const {
+    auto report = odometry.begin();
+    for (const Scan& scan : scans) {
+      for (; report != odometry.end() && report->time <= scan.time; ++report) taker.observe(*report);
+      taker.observe(scan);
+    }
+    for (; report != odometry.end(); ++report) taker.observe(*report);
+  }
+};
+
+inline Timestamp survey_time(double time_s) {
+  return timestamp_from_ns(1'000'000'000'000) + duration_from_seconds(time_s);
+}
+
+/// Wheels that are exact but for what is told.
+inline DriveMessages driven(const OccupancyGrid& hall, const std::vector<Pose2>& way, const WrongWheels& wrong,
+                            Random& random, double max_range_m = 20.0) {
+  constexpr double kScanS = 0.2;
+  constexpr int kReports = 4;  // a scan
+  DriveMessages messages;
+  Pose2 odom;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const Pose2 motion = i + 1 < way.size() ? motion_between(way[i], way[i + 1]) : Pose2{};
+    if (i == way.size() / 2) odom = odom * wrong.slip;
+    for (int k = 0; k < kReports; ++k) {
+      const double share = static_cast<double>(k) / kReports;
+      Odometry report;
+      report.time = survey_time(kScanS * (static_cast<double>(i) + share) + wrong.lag_s);
+      report.odom_from_robot = odom * Pose2{share * motion.x, share * motion.y, share * motion.theta};
+      messages.odometry.push_back(report);
+    }
+    odom = odom * motion;
+    messages.scans.push_back(seen_scan(hall, way[i], 0.01, random, max_range_m).scan);
+    messages.scans.back().time = survey_time(kScanS * static_cast<double>(i));
+  }
+  return messages;
+}
+
 }  // namespace deltamap::test

@@ -40,6 +40,18 @@ TEST(CorrelationField, FindsThePoseWithinALatticeStep) {
   }
 }
 
+TEST(CorrelationField, TellsWhetherTheBestLiesAtTheRimOfTheWindow) {
+  const std::vector<Point2> ends = corner(6.0, 3.0);
+  const CorrelationField field{ends, 0.1, 6};
+  const Pose2 truth{4.0, 3.0, 0.5};
+  const std::vector<Point2> seen = seen_from(truth, ends);
+  const auto found = [&](const Pose2& off) { return best_match(field, seen, {truth * off, 0.3, 0.1}, 0.1, 1.0); };
+  ASSERT_TRUE(found({}) && found({0.6, 0.0, 0.0}) && found({0.0, 0.0, 0.2}));
+  EXPECT_FALSE(found({})->is_at_rim);
+  EXPECT_TRUE(found({0.6, 0.0, 0.0})->is_at_rim);
+  EXPECT_TRUE(found({0.0, 0.0, 0.2})->is_at_rim);
+}
+
 TEST(CorrelationField, ABranchIsNeverCutThatHoldsTheBest) {
   Random random{5};
   for (int trial = 0; trial < 30; ++trial) {

@@ -48,7 +48,7 @@ TEST_F(MapBuild, MakesTheMapOfAHallWhoseWheelsAreMetresOff) {
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   const auto told = nlohmann::json::parse(run.output);
   EXPECT_GT(told["loops"].get<int>(), 20);
-  EXPECT_LT(told["keyframes_by_wheels_alone"].get<int>(), 5);
+  EXPECT_LT(told["keyframes_by_odometry_alone"].get<int>(), 5);
   EXPECT_EQ(told["drives"][0]["recording"], one);
   // Walls along the axes, the first pose at the origin, looking along one of them.
   std::istringstream start{told["drives"][0]["start"].get<std::string>()};
