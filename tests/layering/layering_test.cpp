@@ -168,6 +168,7 @@ const Rooms kRoomArrows = {
     {"mapping/store", {}},
     {"surveying/calibration", {}},
     {"surveying/grid_registration", {}},
+    {"surveying/quality", {}},
     {"surveying/slam", {}},
 };
 
