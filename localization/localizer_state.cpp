@@ -112,12 +112,13 @@ void Localizer::State::take(const Odometry& report) {
 
 motion::ScanInstant Localizer::State::witnessed(const Scan& scan, std::span<const RayInRobot> rays) {
   const odometer::LaserMotion seen = witness.observe(scan, rays, odometry, odometry);
+  const motion::ScanInstant now{scan.time, odometry.at(scan.time)};
   stood_m = seen.stood_m;
   judgement.carry({.is_continued = covers_the_gap(now),
                    .fits_before = !seen.is_lost && !seen.contradicts,
                    .driven_m = seen.motion.position().norm()});
   counts.wheels_contradicted += seen.contradicts ? 1 : 0;
-  return {scan.time, odometry.at(scan.time)};
+  return now;
 }
 
 bool Localizer::State::has_jumped(const motion::ScanInstant& now) const {
