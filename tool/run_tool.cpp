@@ -24,6 +24,7 @@ int run_tool(int argc, const char* const* argv) {
   add_map_history(map);
   add_map_merge(map);
   add_map_picture(map);
+  add_map_quality(map);
   CLI::App& import = *app.add_subcommand("import", "other people's logs as recordings")->require_subcommand(1);
   add_import_carmen(import);
   CLI::App& calibrate =

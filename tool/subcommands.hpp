@@ -34,5 +34,6 @@ void add_map_from_poses(CLI::App& map);
 void add_map_history(CLI::App& map);
 void add_map_merge(CLI::App& map);
 void add_map_picture(CLI::App& map);
+void add_map_quality(CLI::App& map);
 
 }  // namespace deltamap::tool

@@ -18,6 +18,7 @@
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/survey_step.hpp"
 #include "surveying/slam/drawn_map.hpp"
+#include "tool/map/quality_report.hpp"
 #include "tool/output_file.hpp"
 #include "tool/recorded_messages.hpp"
 #include "tool/subcommands.hpp"
@@ -33,8 +34,10 @@ struct BuildOptions {
   std::string config;
   std::vector<std::string> overrides;
   std::string trajectory;
+  std::string picture;
   double resolution_m = 0.05;
   bool keep_frame = false;
+  bool force = false;
   bool json = false;
 
   [[nodiscard]] std::vector<std::string> recordings() const { return {files.begin(), files.end() - 1}; }
@@ -68,15 +71,19 @@ void require_files_apart(const BuildOptions& options) {
     if (std::find(read.begin(), file, *file) != file) throw std::runtime_error(*file + ": given twice");
   }
   if (!options.config.empty()) read.push_back(options.config);
-  const std::string picture = fs::path{options.map()}.replace_extension(".pgm").string();
-  std::vector<std::string> outputs{options.map(), picture};
-  if (!options.trajectory.empty()) outputs.push_back(options.trajectory);
+  std::vector<std::string> outputs{options.map(), fs::path{options.map()}.replace_extension(".pgm").string()};
+  const auto place = [](const std::string& file) { return fs::weakly_canonical(file); };
+  for (const std::string& other : {options.trajectory, options.picture}) {
+    if (other.empty()) continue;
+    for (const std::string& output : outputs) {
+      if (place(other) != place(output)) continue;
+      const bool is_of_map = &output - outputs.data() < 2;
+      throw std::runtime_error(other + (is_of_map ? ": is a file of the map; give another name" : ": given twice"));
+    }
+    outputs.push_back(other);
+  }
   for (const std::string& output : outputs) {
     for (const std::string& file : read) require_output_beside(output, file);
-  }
-  const auto place = [](const std::string& file) { return fs::weakly_canonical(file); };
-  if (outputs.size() > 2 && (place(outputs[2]) == place(outputs[0]) || place(outputs[2]) == place(outputs[1]))) {
-    throw std::runtime_error(options.trajectory + ": is a file of the map; give another name");
   }
 }
 
@@ -127,7 +134,8 @@ Json drives_as_json(const std::vector<SurveyedDrive>& drives, const surveying::s
 }
 
 Json built_as_json(const std::string& map, const std::vector<SurveyedDrive>& drives, const surveying::slam::Slam& slam,
-                   const Pose2& map_from_survey, const OccupancyGrid& grid) {
+                   const Pose2& map_from_survey, const OccupancyGrid& grid,
+                   const surveying::quality::MapQuality& quality) {
   const surveying::slam::Survey& survey = slam.survey();
   return {{"map", map},
           {"width", grid.width()},
@@ -140,6 +148,7 @@ Json built_as_json(const std::string& map, const std::vector<SurveyedDrive>& dri
           {"loops",
            std::count_if(survey.links.begin(), survey.links.end(), [](const auto& link) { return link.may_drop; })},
           {"loops_contradicted", slam.loops().contradicted()},
+          {"quality", Json::parse(quality_as_json(quality))},
           {"drives", drives_as_json(drives, survey, map_from_survey)}};
 }
 
@@ -154,6 +163,16 @@ void print_built(const Json& built) {
               << drive["start"].get<std::string>() << " to " << drive["end"].get<std::string>() << " (x,y,deg)\n";
   }
   if (built["loops"] == 0) std::cout << "no place was seen twice: where the way was long the map may be bent\n";
+}
+
+surveying::quality::MapQuality quality_of(const surveying::slam::Survey& survey, const Pose2& map_from_survey,
+                                          const OccupancyGrid& grid) {
+  std::vector<surveying::quality::PlacedScan> scans;
+  for (const std::uint32_t node : survey.joined_nodes()) {
+    const surveying::slam::Keyframe& keyframe = survey.keyframes[node];
+    scans.push_back({keyframe.tracked.get(), map_from_survey * survey.poses[node], keyframe.drive});
+  }
+  return surveying::quality::map_quality(grid, scans);
 }
 
 void run_build(const BuildOptions& options) {
@@ -173,13 +192,25 @@ void run_build(const BuildOptions& options) {
   if (count_of(grid, CellState::kFree) == 0) {
     throw std::runtime_error(drives.front().recording + ": no scan has a valid range");
   }
+  const surveying::quality::MapQuality quality = quality_of(survey, map_from_survey, grid);
+  if (!options.picture.empty()) draw_quality(grid, quality, options.picture);
   if (!options.trajectory.empty()) write_trajectory(options.trajectory, step, map_from_survey);
-  write_grid(grid, options.map());
-  const Json built = built_as_json(options.map(), drives, step.slam(), map_from_survey, grid);
+  const bool is_written = !quality.is_false() || options.force;
+  if (is_written) write_grid(grid, options.map());
+  Json built = built_as_json(options.map(), drives, step.slam(), map_from_survey, grid, quality);
+  built["written"] = is_written;
   if (options.json) {
     std::cout << built.dump(2) << '\n';
   } else {
     print_built(built);
+  }
+  for (const std::string& line : quality_lines(quality)) {
+    if (quality.is_false() || !options.json) (quality.is_false() ? std::cerr : std::cout) << line << '\n';
+  }
+  if (!is_written) {
+    throw std::runtime_error(options.map() +
+                             ": not written, the map is false; drive on where it is wrong and give all " +
+                             "recordings, or write it anyway by --force");
   }
 }
 
@@ -197,6 +228,8 @@ void add_map_build(CLI::App& map) {
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   command.add_option("--trajectory", options->trajectory, "where every scan was taken, to write (TUM)");
+  command.add_option("--picture", options->picture, "the map with a ring where it contradicts itself, to write (PNG)");
+  command.add_flag("--force", options->force, "write the map even if it is false");
   command.add_flag("--keep-frame", options->keep_frame,
                    "x points to where the robot looked at first; else along most of the walls");
   command.add_flag("--json", options->json, "print the result as JSON");

@@ -21,6 +21,7 @@ constexpr int kTitle_px = 26;
 constexpr std::int64_t kMostPixels = 64'000'000;
 constexpr double kTogether_m = 0.3;  // changed cells so close are one place
 constexpr int kSmall_px = 26;        // a place with shorter sides is ringed
+constexpr int kDoubted_px = 14;      // radius
 constexpr double kRobot_m = 0.25;    // radius
 
 const Ink& ink_of(CellState before, CellState after) {
@@ -104,6 +105,7 @@ std::vector<Key> keys_of(const Scene& scene, bool has_rings) {
     keys.push_back({Sign::kCell, kForgotten, "forgotten"});
   }
   if (has_rings) keys.push_back({Sign::kCircle, kRing, "small change"});
+  if (!scene.doubted.empty()) keys.push_back({Sign::kCircle, kRing, "contradiction"});
   if (scene.path) keys.push_back({Sign::kLine, kPath, "path"});
   if (!scene.scan_ends.empty()) keys.push_back({Sign::kDot, kScan, "scan"});
   if (scene.robot) keys.push_back({Sign::kArrow, kRobot, "robot"});
@@ -119,6 +121,7 @@ Canvas drawn_map(const Scene& scene, const View& view, const CellBox& box) {
     const int reach = std::max(1, static_cast<int>(kTogether_m / scene.map.resolution_m()));
     draw_rings(canvas, changed_places(changes_between(*scene.before, scene.map), reach), view, box);
   }
+  for (const Point2& place : scene.doubted) canvas.draw_ring(view.pixel(place), kDoubted_px);
   if (scene.robot) {
     const double radius = std::max(7.0, kRobot_m * view.px_per_m());
     canvas.draw_robot(view.pixel(scene.robot->position()), scene.robot->theta, radius);

@@ -20,6 +20,7 @@ struct Scene {
   std::optional<std::vector<Point2>>
       path{};                       ///< map frame, in order of time; may be empty: the legend has it all the same
   std::vector<Point2> scan_ends{};  ///< map frame
+  std::vector<Point2> doubted{};    ///< map frame: places where the map contradicts itself, ringed
   std::string title{};              ///< above the map; empty: none
   std::optional<CellBox> shown{};   ///< nothing: known_part() of the maps
   int cell_pixels = 0;              ///< side of a cell in the picture; 0: as fits a page

@@ -33,6 +33,23 @@ class MapBuild : public testing::Test {
     words.insert(words.end(), {"--set", "laser.mount.x_m=0", "--set", "laser.variant=180/1"});
     return run_deltamap(words);
   }
+  /// A round of the hall, and the same one again after a container as large as the middle was put there.
+  std::string recorded_while_rebuilt() {
+    OccupancyGrid later = hall;
+    test::fill(later, {3.0, 2.0}, {17.0, 6.2}, CellState::kOccupied);
+    const std::vector<Pose2> round = test::rounds_of_the_hall(1);
+    std::vector<TrackedScan> scans = test::surveyed(hall, round, random);
+    const Pose2 so_far = scans.back().odom_from_robot;
+    for (TrackedScan& scan : test::surveyed(later, round, random)) {
+      scan.odom_from_robot = so_far * scan.odom_from_robot;
+      scans.push_back(std::move(scan));
+    }
+    const std::string recording = (folder.path() / "rebuilt.pcapng").string();
+    EXPECT_EQ(
+        run_deltamap({"import", "carmen", folder.write("rebuilt.log", test::carmen_log(scans)), recording}).exit_code,
+        0);
+    return recording;
+  }
   [[nodiscard]] bool exists(const std::string& name) const { return std::filesystem::exists(folder.path() / name); }
 
   test::TemporaryFolder folder;
@@ -106,6 +123,44 @@ TEST_F(MapBuild, WritesNothingOfADriveThatItCannotPlace) {
   EXPECT_NE(run.errors.find("elsewhere.pcapng: not found in what the drives before it have seen"), std::string::npos)
       << run.errors;
   EXPECT_FALSE(exists("hall.yaml") || exists("hall.pgm"));
+}
+
+TEST_F(MapBuild, WritesAFalseMapByForceAlone) {
+  const std::string rebuilt = recorded_while_rebuilt();
+  const std::string png = (folder.path() / "doubts.png").string();
+  const test::ToolRun refused = build({rebuilt, yaml, "--json", "--picture", png});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.errors.find("false: "), std::string::npos) << refused.errors;
+  EXPECT_NE(refused.errors.find("not written, the map is false"), std::string::npos) << refused.errors;
+  EXPECT_FALSE(exists("hall.yaml") || exists("hall.pgm"));
+  EXPECT_TRUE(exists("doubts.png"));
+  const auto told = nlohmann::json::parse(refused.output);
+  EXPECT_TRUE(told["quality"]["false"].get<bool>());
+  EXPECT_FALSE(told["written"].get<bool>());
+  const test::ToolRun forced = build({rebuilt, yaml, "--force"});
+  EXPECT_EQ(forced.exit_code, 0) << forced.errors;
+  EXPECT_NE(forced.errors.find("false: "), std::string::npos) << forced.errors;
+  EXPECT_TRUE(exists("hall.yaml") && exists("hall.pgm"));
+}
+
+TEST_F(MapBuild, IsJudgedAgainByMapQuality) {
+  const std::string one = recorded("one", hall, test::rounds_of_the_hall(2));
+  const std::string tum = (folder.path() / "way.tum").string();
+  ASSERT_EQ(build({one, yaml, "--trajectory", tum}).exit_code, 0);
+  const auto quality = [&](const std::string& map) {
+    return run_deltamap({"map", "quality", map, one, "--trajectory", tum, "--json", "--set", "laser.mount.x_m=0",
+                         "--set", "laser.variant=180/1"});
+  };
+  const test::ToolRun good = quality(yaml);
+  EXPECT_EQ(good.exit_code, 0) << good.errors;
+  const auto told = nlohmann::json::parse(good.output);
+  EXPECT_FALSE(told["false"].get<bool>());
+  EXPECT_GT(told["pairs_compared"].get<int>(), 50);
+  const std::string other = (folder.path() / "other.yaml").string();
+  write_grid(OccupancyGrid{read_grid(yaml).geometry(), CellState::kFree}, other);
+  const test::ToolRun wrong = quality(other);
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_TRUE(nlohmann::json::parse(wrong.output)["flaws"]["unfit_scans"]["beyond_limit"].get<bool>());
 }
 
 TEST_F(MapBuild, NamesWhatIsWrongAndWritesNothing) {
