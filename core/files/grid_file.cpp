@@ -13,12 +13,12 @@
 
 #include "core/files/grid_description.hpp"
 #include "core/files/grid_shades.hpp"
+#include "core/files/picture_reader.hpp"
 #include "core/files/replace_file.hpp"
 #include "core/files/shortest_text.hpp"
 #include "core/files/text_of_file.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/grid/tiled.hpp"
-#include "core/pictures/picture_reader.hpp"
 
 namespace deltamap {
 namespace {

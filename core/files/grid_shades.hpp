@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/files/grid_description.hpp"
+#include "core/files/picture_reader.hpp"
 #include "core/grid/occupancy_grid.hpp"
-#include "core/pictures/picture_reader.hpp"
 
 namespace deltamap {
 

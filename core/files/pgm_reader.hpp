@@ -2,7 +2,7 @@
 // Portable graymaps: binary (P5) and text (P2), 8 and 16 bit.
 #pragma once
 
-#include "core/pictures/picture_reader.hpp"
+#include "core/files/picture_reader.hpp"
 
 namespace deltamap {
 

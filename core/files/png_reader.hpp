@@ -3,7 +3,7 @@
 // green and blue, as map_server reads them; alpha 0 is transparent.
 #pragma once
 
-#include "core/pictures/picture_reader.hpp"
+#include "core/files/picture_reader.hpp"
 
 namespace deltamap {
 

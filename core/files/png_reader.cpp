@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pictures/png_reader.hpp"
+#include "core/files/png_reader.hpp"
 
 #include <png.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pictures/pgm_reader.hpp"
+#include "core/files/pgm_reader.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pictures/picture_reader.hpp"
+#include "core/files/picture_reader.hpp"
 
 #include <cerrno>
 #include <fstream>
@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "core/files/foreign_file.hpp"
-#include "core/pictures/pgm_reader.hpp"
-#include "core/pictures/png_reader.hpp"
+#include "core/files/pgm_reader.hpp"
+#include "core/files/png_reader.hpp"
 
 namespace deltamap {
 namespace {
