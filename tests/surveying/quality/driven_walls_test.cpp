@@ -18,9 +18,9 @@ TEST(DrivenWalls, AreNoneAtTruePoses) {
 }
 
 TEST(DrivenWalls, AreWhereTheWayLeadsThroughOne) {
-  const std::vector<Pose2> way = test::rounds_of_the_hall(1);
+  const std::vector<Pose2> way = test::rounds_of_the_hall(2);
   test::PlacedDrive drive{test::drawn_hall(0.02), way};
-  // The way back along the middle of the hall, drawn through the containers at y = 8.5 to 10.
+  // The second round, drawn through the containers at y = 8.5 to 10.
   drive.move(way.size() / 2, way.size(), {0.0, 2.4, 0.0});
   EXPECT_FALSE(driven(drive).empty());
 }
