@@ -7,6 +7,8 @@ set -euo pipefail
 bin=$1
 source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 write_first_map
+# A map in which nothing is unknown is warned of.
+printf '\315' | dd of="$out/m0.pgm" bs=1 seek=$(($(stat -c %s "$out/m0.pgm") - 1)) conv=notrunc status=none
 chmod 755 "$out"
 disk=$out/disk
 holder=

@@ -115,6 +115,7 @@ TEST_F(CalibrateMotion, RefusesAMapThatTheDriveDoesNotFit) {
   record(300, true);
   OccupancyGrid elsewhere{{200, 200, 0.1, {-5.0, -5.0}}, CellState::kFree};
   test::fill(elsewhere, {8.0, 8.0}, {9.0, 9.0}, CellState::kOccupied);
+  test::fill(elsewhere, {9.0, 9.0}, {10.0, 10.0}, CellState::kUnknown);
   write_grid(elsewhere, file("hall.yaml"));
   const ToolRun refused = calibrate();
   EXPECT_EQ(refused.exit_code, 1);

@@ -17,7 +17,7 @@ TEST(SurveyStep, LeavesOutScansThatNoOdometrySpeaksForAndPlacesAllOthers) {
   SurveyStep step{Settings{}};
   step.begin_drive();
   Scan too_early = test::seen_scan(hall, way.front(), 0.01, random).scan;
-  too_early.time = survey_time(-1.0);
+  too_early.time = survey_time(-2.0);
   step.observe(too_early);
   for (std::size_t i = 0; i < way.size(); ++i) {
     Odometry odometry;
