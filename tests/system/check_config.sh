@@ -7,8 +7,6 @@ set -euo pipefail
 bin=$1
 source "$(dirname "${BASH_SOURCE[0]}")/two_ports.sh"
 write_first_map
-# A map in which nothing is unknown is warned of.
-printf '\315' | dd of="$out/m0.pgm" bs=1 seek=$(($(stat -c %s "$out/m0.pgm") - 1)) conv=notrunc status=none
 chmod 755 "$out"
 disk=$out/disk
 holder=
@@ -20,7 +18,7 @@ clean_up() {
 as_other=()
 ((EUID != 0)) || as_other=(setpriv --reuid=65534 --regid=65534 --clear-groups)
 plain=("${on_the_world[@]}" --set robot.port="$out/no_robot" --set laser.port="$out/no_laser"
-  --set map.store= --set recording.file= --set control.socket=)
+  --set map.store= --set recording.file= --set control.socket= --initial-pose 1,2,0)
 # A sound store with its first map, to copy.
 "$bin/deltamapd" "${plain[@]}" --set map.store="$out/sound.sqlite" 2>"$out/sound.log" &
 daemon=$!
