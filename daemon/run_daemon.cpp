@@ -252,8 +252,7 @@ Pipeline::Options prepared(const SettingsReading& reading, const CommandLine& li
   const OccupancyGrid first = first_map(settings, line, console);
   options.first_map = grid_hash(first);
   require_pose_on(first.geometry(), settings);
-  if (const std::string doubt = doubt_of_pose(first, settings); !doubt.empty())
-    console.log(LogLevel::kWarn, doubt);
+  if (const std::string doubt = doubt_of_pose(first, settings); !doubt.empty()) console.log(LogLevel::kWarn, doubt);
   options.start.map = std::make_shared<const OccupancyGrid>(first);
   make_state_folders(settings, line.config);
   if (!line.out.empty()) options.out = folder_to_write(line.out, settings);

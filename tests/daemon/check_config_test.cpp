@@ -95,7 +95,8 @@ TEST_F(CheckConfig, AStartInTheUnknownOrInAWallIsAWarning) {
     settings_.initial_pose = pose;
     const auto findings = check_config(settings_, "robot.yaml", "");
     return std::any_of(findings.begin(), findings.end(), [&](const Finding& one) {
-      return one.level == Level::kWarning && one.text.find("lies " + where + " of the map: is it right?") != std::string::npos;
+      return one.level == Level::kWarning &&
+             one.text.find("lies " + where + " of the map: is it right?") != std::string::npos;
     });
   };
   EXPECT_TRUE(warned({0.12, 0.07, 0.0}, "in the unknown"));
