@@ -87,6 +87,7 @@ void draw_rings(Canvas& canvas, const std::vector<CellBox>& places, const View& 
 
 void draw_path(Canvas& canvas, const std::vector<Point2>& path, const View& view) {
   std::vector<Pixel> pixels;
+  pixels.reserve(path.size());
   for (const Point2& point : path) pixels.push_back(view.pixel(point));
   canvas.draw_line(pixels, kPath);
 }
