@@ -92,6 +92,8 @@ std::optional<double> Localizer::fit() const { return state_->newest_fit; }
 
 std::optional<double> Localizer::fit_of_all() const { return state_->newest_fit_of_all; }
 
+std::optional<sensor::OtherScale> Localizer::range_scale() const { return state_->range_scale.shown(); }
+
 bool Localizer::is_carried() const { return state_->judgement.is_carried(); }
 
 std::optional<motion::DriveCalibration> Localizer::calibration() const { return state_->tracker.calibration(); }

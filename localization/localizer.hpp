@@ -14,6 +14,7 @@
 #include "localization/localizer_counts.hpp"
 #include "localization/motion/drive_calibration.hpp"
 #include "localization/particles/initial_pose.hpp"
+#include "localization/sensor/range_scale.hpp"
 
 namespace deltamap::localization {
 
@@ -63,6 +64,9 @@ class Localizer {
   /// Wheels and scans have carried the pose here from where it was surely right: beams that the map does not explain
   /// meet what is new.
   [[nodiscard]] bool is_carried() const;
+
+  /// The map explains the scans of some way clearly better with ranges of another scale; nothing else.
+  [[nodiscard]] std::optional<sensor::OtherScale> range_scale() const;
 
   /// Errors of wheels and mount, as far as driving among surfaces has told; nothing where surfaces are not followed.
   [[nodiscard]] std::optional<motion::DriveCalibration> calibration() const;

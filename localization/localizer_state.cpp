@@ -270,6 +270,7 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   const bool is_tracking = monitor.state() == LocalizerState::kTracking && !check.under_way();
   last_believed = is_tracking ? std::optional{believed.map_from_robot} : std::nullopt;
   seen.fit = sensor::explained_share(field, ends, believed.map_from_robot);
+  range_scale.observe(field, ends, scan.robot_from_laser.position(), believed.map_from_robot, seen.driven_m);
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
   newest_fit = blind ? std::nullopt : std::optional{seen.fit};
   const double explained = blind ? 0.0 : seen.fit * static_cast<double>(ends.size());

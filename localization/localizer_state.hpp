@@ -15,6 +15,7 @@
 #include "localization/localizer.hpp"
 #include "localization/localizer_params.hpp"
 #include "localization/odometer/scan_witness.hpp"
+#include "localization/sensor/range_scale.hpp"
 #include "localization/surfaces/faced_scan.hpp"
 #include "localization/tracking/tracker.hpp"
 
@@ -60,6 +61,7 @@ struct Localizer::State {
   std::optional<double> newest_fit_of_all;  ///< what that is of all beams that came back
   double n_eff = 0.0;                       ///< of the particles, or of a search's hypotheses
   belief::StableSupport stable_support;
+  sensor::RangeScale range_scale;
 
   // How a pose comes to be believed, and ceases to be.
   void start_at(const particles::InitialPose& given);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <compare>
 #include <memory>
 #include <stdexcept>
@@ -51,6 +52,7 @@ class Replay {
  private:
   void take(const Odometry& odometry, std::uint32_t number);
   void take(Scan&& scan);
+  void warn() const;
   void obey_commands_before(const Scan& scan);
   void look_for_changes(const TrackedScan& tracked);
   [[nodiscard]] bool reaches_map(const ScanSet& set, std::uint32_t scan);
@@ -134,6 +136,7 @@ void Replay::take(Scan&& scan) {
   const double cost_s = run_.cpu().localization_s - before_s;
   report_.latency.add(cost_s);
   ++report_.scans.localized;
+  warn();
   const LocalizationRow& row = run_.localization().row();
   {
     const CpuTimer timer{recording_cpu_s_};
@@ -142,6 +145,15 @@ void Replay::take(Scan&& scan) {
   }
   if (job_.settings.mapping.enabled && !is_paused_) look_for_changes(tracked);
   if (job_.watch.scan) job_.watch.scan({tracked, row, cost_s, run_.localization().particles(), run_.store_scan()});
+}
+
+/// Of what a live run would say of the newest scan, what needs a person.
+void Replay::warn() const {
+  for (const LogLine& line : run_.localization().lines()) {
+    if (!line.is_warning || !job_.warn) continue;
+    const auto at_s = std::lround(run_.localization().covered_s());
+    job_.warn("after " + std::to_string(at_s) + " s: " + line.text);
+  }
 }
 
 /// Carries out the operator's commands up to this scan. They are inputs as the bytes are, so they count even where the

@@ -40,8 +40,7 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
       first_map_{first_map},
       map_{start.map},
       memory_{settings.memory},
-      is_kept_{!settings.map.store.empty()},
-      fit_watch_{settings.initial_pose.has_value()} {
+      is_kept_{!settings.map.store.empty()} {
   if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
     (void)wiring_.recorder.send(refused_start_line());
   }
@@ -98,13 +97,12 @@ void LocalizationStage::localize(Scan scan) {
   take_transients(number);
   take_commands(scan);
   TrackedScan tracked = step_.observe(std::move(scan));
-  LogLine fit_line = fit_watch_.observe(tracked, {step_.fit(), step_.fit_of_all()});
   answer_relocalize(number);
   pilot(tracked);
   show(tracked.estimate, tracked.scan.received);
   wiring_.show(tracked, step_.row(), wiring_.telemetry.latency_s.value(), step_.particles());
   tell_changes();
-  if (!fit_line.text.empty()) (void)wiring_.recorder.send(std::move(fit_line));
+  for (const LogLine& line : step_.lines()) (void)wiring_.recorder.send(LogLine{line});
   (void)wiring_.recorder.send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
   (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
   map_ = tracked.estimate.map;
@@ -133,7 +131,7 @@ void LocalizationStage::take_transients(std::uint32_t scan) {
 
 void LocalizationStage::pilot(const TrackedScan& tracked) {
   const PilotWord word = pilot_.observe(tracked, {.fit = step_.fit(),
-                                                  .start_fits = fit_watch_.start_fits(),
+                                                  .start_fits = step_.start_fits(),
                                                   .is_carried = step_.is_carried(),
                                                   .transients = transients_.get(),
                                                   .times_let_drive = wiring_.telemetry.times_let_drive.value()});
@@ -179,7 +177,6 @@ void LocalizationStage::relocalize(const control::Command& command, const Scan& 
     return wiring_.answer({command.ticket, false, "no free floor lies within 1 m of it: the pose stays as it was"});
   }
   note({Kind::kRelocalized, scan.number, 0, command.map_from_robot, scan.time});
-  fit_watch_.relocalized();
   relocalized_ = command.ticket;
 }
 

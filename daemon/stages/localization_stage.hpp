@@ -13,7 +13,6 @@
 #include "daemon/records/map_order.hpp"
 #include "daemon/records/recorder.hpp"
 #include "daemon/settings/settings.hpp"
-#include "daemon/stages/fit_watch.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "daemon/steps/pilot_step.hpp"
 #include "daemon/telemetry/latency_histogram.hpp"
@@ -91,7 +90,6 @@ class LocalizationStage {
   bool is_kept_;                        // there is a store to keep it beside
   std::optional<Timestamp> pose_kept_;  // nothing until the first scan
   std::optional<Timestamp> stability_kept_;
-  FitWatch fit_watch_;
   std::optional<std::uint64_t> relocalized_;  // the ticket of a pose that the next scan tells the fit of
   Timestamp last_scan_came_;                  // or the start of the run
   bool has_tracked_ = false;                  // until then what an earlier run has kept is the better answer

@@ -48,6 +48,8 @@ std::string doubt_of_pose(const OccupancyGrid& map, const Settings& settings) {
 
 LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
     : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
+      fit_watch_{settings.initial_pose.has_value()},
+      mount_watch_{settings.localizer.odometry, settings.laser.session.is_upside_down},
       ratio_{settings.mapping.divergence},
       last_map_from_robot_{settings.initial_pose.value_or(start.remembered.value_or(Pose2{}))} {
   if (start.revision > 0)
@@ -57,10 +59,16 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
   calibration_ = calibration_now_ = localizer_.calibration();
 }
 
-void LocalizationStep::observe(const Odometry& odometry) { localizer_.observe(odometry); }
+void LocalizationStep::observe(const Odometry& odometry) {
+  localizer_.observe(odometry);
+  mount_watch_.observe(odometry);
+}
 
 TrackedScan LocalizationStep::observe(Scan scan) {
+  lines_.clear();
+  tell(mount_watch_.observe(scan));
   TrackedScan tracked = localizer_.observe(std::move(scan));
+  tell(fit_watch_.observe(tracked, {fit(), fit_of_all(), localizer_.range_scale()}));
   learn_or_forget(tracked);
   last_map_from_robot_ = tracked.estimate.map_from_robot;
   last_odom_from_robot_ = localizer_.odom_from_robot(tracked.scan.time);
@@ -70,6 +78,10 @@ TrackedScan LocalizationStep::observe(Scan scan) {
   tracked.weights = ratio_.observe(tracked.estimate);
   row_ = row_of(tracked);
   return tracked;
+}
+
+void LocalizationStep::tell(LogLine line) {
+  if (!line.text.empty()) lines_.push_back(std::move(line));
 }
 
 /// Wheels that spin, or are pushed, tell nothing of how they err: what was learned on such a way is forgotten. It may
@@ -102,7 +114,9 @@ void LocalizationStep::apply(std::shared_ptr<const TransientObstacles> transient
 }
 
 bool LocalizationStep::relocalize(const Pose2& map_from_robot) {
-  return localizer_.relocalize(localization::particles::InitialPose{map_from_robot});
+  if (!localizer_.relocalize(localization::particles::InitialPose{map_from_robot})) return false;
+  fit_watch_.relocalized();
+  return true;
 }
 
 std::map<std::string, std::uint64_t> LocalizationStep::counts() const {

@@ -12,6 +12,8 @@
 #include "daemon/outputs/localization_log.hpp"
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/settings/settings.hpp"
+#include "daemon/steps/fit_watch.hpp"
+#include "daemon/steps/mount_watch.hpp"
 #include "localization/localizer.hpp"
 #include "mapping/paper/divergence_ratio.hpp"
 
@@ -61,6 +63,10 @@ class LocalizationStep {
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
   /// As Localizer::fit_of_all().
   [[nodiscard]] std::optional<double> fit_of_all() const { return localizer_.fit_of_all(); }
+  /// What a person should know of the newest scan's pose or of the laser's mount: lines for the log, seldom any.
+  [[nodiscard]] const std::vector<LogLine>& lines() const { return lines_; }
+  /// As FitWatch::start_fits().
+  [[nodiscard]] bool start_fits() const { return fit_watch_.start_fits(); }
   /// As Localizer::is_carried().
   [[nodiscard]] bool is_carried() const { return localizer_.is_carried(); }
   /// What is known of wheels and mount, without what was learned on the last way: whether scans and wheels contradict
@@ -82,11 +88,15 @@ class LocalizationStep {
  private:
   void count_time(Timestamp time);
   void learn_or_forget(const TrackedScan& tracked);
+  void tell(LogLine line);
 
   localization::Localizer localizer_;
   std::optional<localization::motion::DriveCalibration> calibration_;      // before the newest metre
   std::optional<localization::motion::DriveCalibration> calibration_now_;  // after the one before
   double since_kept_m_ = 0.0;
+  FitWatch fit_watch_;
+  MountWatch mount_watch_;
+  std::vector<LogLine> lines_;
   mapping::paper::DivergenceRatio ratio_;
   LocalizationRow row_;
   Pose2 last_map_from_robot_;

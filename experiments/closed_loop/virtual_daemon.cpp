@@ -6,7 +6,6 @@
 
 #include "daemon/driving/drive_desk.hpp"
 #include "daemon/replay/sequential_run.hpp"
-#include "daemon/stages/fit_watch.hpp"
 #include "daemon/steps/pilot_step.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 #include "drivers/lms200/session.hpp"
@@ -57,8 +56,7 @@ struct VirtualDaemon::Process {
               .obey = [this](PioneerOutput out) { robot.handle(std::move(out), now()); },
               .log = [this](const std::string& line) { owner.log_.push_back(line); },
               .warn = [this](const std::string& line) { owner.log_.push_back(line); }}},
-        pilot{its_owner.params_.settings},
-        fit_watch{its_owner.params_.settings.initial_pose.has_value()} {
+        pilot{its_owner.params_.settings} {
     if (its_owner.params_.map == nullptr) return;
     const daemon::StartMap start{.map = its_owner.params_.map};
     run.emplace(its_owner.params_.settings, start, nullptr, kMapDelayS);
@@ -96,9 +94,8 @@ struct VirtualDaemon::Process {
     seen.times_let_drive = telemetry.times_let_drive.value();
     if (run) {
       seen.fit = run->localization().fit();
-      const std::string line = fit_watch.observe(tracked, {seen.fit, run->localization().fit_of_all()}).text;
-      if (!line.empty()) owner.log_.push_back(line);
-      seen.start_fits = fit_watch.start_fits();
+      for (const daemon::LogLine& line : run->localization().lines()) owner.log_.push_back(line.text);
+      seen.start_fits = run->localization().start_fits();
       seen.is_carried = run->localization().is_carried();
       seen.transients = run->store_scan().transients().get();
     }
@@ -135,7 +132,6 @@ struct VirtualDaemon::Process {
   VirtualLink<Lms200Session, Lms200Output> laser;
   daemon::DriveDesk desk;
   daemon::PilotStep pilot;
-  daemon::FitWatch fit_watch;
   std::optional<daemon::SequentialRun> run;
   Odometry newest;
   std::uint32_t scans = 0;

@@ -83,6 +83,21 @@ TEST_F(ReplayTest, WritesEveryFileOfTheContract) {
   EXPECT_EQ(mapping::store::MapStore{folder_.path() / "out/map_store.sqlite"}.grid(0), test::small_room(false));
 }
 
+TEST_F(ReplayTest, SaysWhatALiveRunWouldSayOfPoseAndMount) {
+  test::write_drive(folder_.path() / "drive.log", 24.0);
+  (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
+  std::string said;
+  ReplayJob wrong = job();
+  wrong.warn = [&](const std::string& line) { said += line + "\n"; };
+  EXPECT_EQ(error_of(wrong), "");
+  EXPECT_EQ(said.find(" s: "), std::string::npos) << "of the drive: " << said;
+  wrong.settings.laser.session.is_upside_down = true;  // and it is not
+  wrong.settings.initial_pose->theta += radians(100.0);
+  EXPECT_EQ(error_of(wrong), "");
+  EXPECT_NE(said.find(" s: the start pose does not fit: "), std::string::npos) << said;
+  EXPECT_NE(said.find("'laser.mount.upside_down: false'"), std::string::npos) << said;
+}
+
 TEST_F(ReplayTest, FindsTheSameChangesHoweverMuchUnknownSpaceLiesAroundTheMap) {
   test::write_drive(folder_.path() / "drive.log", 24.0);
   (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);

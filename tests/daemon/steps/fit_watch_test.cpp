@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pose that fits nowhere and a map of somewhere else are told, once and at once.
-#include "daemon/stages/fit_watch.hpp"
+#include "daemon/steps/fit_watch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ class Watched {
   void hold() { step_m_ = 0.0; }
 
   std::string after(double duration_s, std::optional<double> fit, LocalizerState state = LocalizerState::kTracking) {
-    return after(duration_s, {fit, fit}, state);
+    return after(duration_s, FitWatch::Seen{fit, fit}, state);
   }
   std::string after(double duration_s, const FitWatch::Seen& seen, LocalizerState state = LocalizerState::kTracking) {
     std::string said;
@@ -50,6 +50,15 @@ TEST(FitWatch, AStartPoseThatDoesNotFitIsToldAfterTheFirstScans) {
             "wrong: say where the robot stands by `deltamap ctl relocalize X,Y,DEG`\n");
   EXPECT_EQ(Watched{true}.after(10.0, 0.9), "");
   EXPECT_EQ(Watched{false}.after(1.0, 0.23), "") << "nobody gave one";
+}
+
+TEST(FitWatch, RangesOfAnotherScaleAreToldOnce) {
+  Watched watched{true};
+  EXPECT_EQ(watched.after(5.0, 0.9), "");
+  const FitWatch::Seen seen{0.7, 0.7, localization::sensor::OtherScale{1.1, 0.88, 0.72}};
+  EXPECT_EQ(watched.after(5.0, seen),
+            "warning: ranges and map differ in scale: with ranges 1.10 times as long the map explains 88 % of the "
+            "beams, as they are 72 %; look at the laser's unit, and at 'resolution' in the map's YAML\n");
 }
 
 TEST(FitWatch, ScansWithoutAReturnSayNothingOfTheStartPose) {

@@ -9,6 +9,7 @@
 
 #include "core/messages.hpp"
 #include "daemon/telemetry/log_line.hpp"
+#include "localization/sensor/range_scale.hpp"
 
 namespace deltamap::daemon {
 
@@ -27,8 +28,9 @@ class FitWatch {
   explicit FitWatch(bool is_given) : given_{is_given ? std::optional{Given{}} : std::nullopt} {}
 
   struct Seen {
-    std::optional<double> fit;         ///< as LocalizationStep::fit()
-    std::optional<double> fit_of_all;  ///< as LocalizationStep::fit_of_all()
+    std::optional<double> fit;                                ///< as LocalizationStep::fit()
+    std::optional<double> fit_of_all;                         ///< as LocalizationStep::fit_of_all()
+    std::optional<localization::sensor::OtherScale> scale{};  ///< as Localizer::range_scale()
   };
   /// After each scan: a line for the log, of no text where there is nothing to say.
   [[nodiscard]] LogLine observe(const TrackedScan& tracked, const Seen& seen);
@@ -50,6 +52,7 @@ class FitWatch {
     bool is_told = false;  // that it does not fit
   };
   [[nodiscard]] LogLine judged_start(std::optional<double> fit_of_all, PoseVerdict verdict);
+  [[nodiscard]] LogLine judged_scale(const std::optional<localization::sensor::OtherScale>& scale);
   [[nodiscard]] LogLine judged_long(LocalizerState state);
   void pass(const TrackedScan& tracked);
 
@@ -62,6 +65,7 @@ class FitWatch {
   double unfit_s_ = 0.0;   // unbroken
   double unfit_m_ = 0.0;   // driven meanwhile
   bool said_ = false;
+  double told_factor_ = 1.0;  // of the ranges
 };
 
 }  // namespace deltamap::daemon

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/stages/fit_watch.hpp"
+#include "daemon/steps/fit_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "localization/belief/fit_monitor.hpp"
@@ -51,6 +52,7 @@ LogLine FitWatch::observe(const TrackedScan& tracked, const Seen& seen) {
     mean_fit_ = before + (1.0 - std::exp(-passed_s_ / kJudged.memory_s)) * (*seen.fit - before);
   }
   if (LogLine start = judged_start(seen.fit_of_all, tracked.estimate.belief.verdict); !start.text.empty()) return start;
+  if (LogLine scale = judged_scale(seen.scale); !scale.text.empty()) return scale;
   const bool is_unfit =
       tracked.estimate.state != LocalizerState::kTracking || mean_fit_.value_or(1.0) < kJudged.lost_below;
   unfit_s_ = is_unfit ? unfit_s_ + passed_s_ : 0.0;
@@ -76,6 +78,18 @@ LogLine FitWatch::judged_start(std::optional<double> fit_of_all, PoseVerdict ver
   return {"the start pose does not fit: " + percent(given.fit) +
               " of the beams end where the map says; the map may be another, or the pose wrong: " + kSayWhere,
           true};
+}
+
+LogLine FitWatch::judged_scale(const std::optional<localization::sensor::OtherScale>& scale) {
+  if (!scale || scale->factor == told_factor_) return {};
+  told_factor_ = scale->factor;
+  char text[240];
+  (void)std::snprintf(
+      text, sizeof text,
+      "ranges and map differ in scale: with ranges %.2f times as long the map explains %s of the beams, "
+      "as they are %s; look at the laser's unit, and at 'resolution' in the map's YAML",
+      scale->factor, percent(scale->explained).c_str(), percent(scale->explained_as_is).c_str());
+  return {text, true};
 }
 
 LogLine FitWatch::judged_long(LocalizerState state) {
