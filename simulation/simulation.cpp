@@ -49,6 +49,7 @@ devices::Lms200Setup lms200_setup(const LaserSetup& laser) {
   setup.baud = laser.baud;
   setup.variant = {static_cast<std::uint16_t>(laser.field_deg),
                    static_cast<std::uint16_t>(std::lround(100.0 * laser.step_deg))};
+  setup.has_fixed_variant = laser.field_deg == 90;  // as an LMS291-S14
   setup.units = laser.resolution_m < 0.005 ? lms200::Units::kMillimetre : lms200::Units::kCentimetre;
   const double reach_words = laser.max_range_m / laser.resolution_m;  // B4: 13, 14 or 15 bits
   setup.measuring_mode = reach_words > 16'000 ? 0x06 : reach_words > 8'000 ? 0x04 : 0x00;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "experiments/closed_loop/virtual_daemon.hpp"
 #include "simulation/scenario/start_map.hpp"
@@ -14,6 +15,7 @@ constexpr Timestamp kLoopStart = timestamp_from_ns(1'700'000'000'000'000'000);
 constexpr double kOwnSpeedMPerS = 0.02;  // slower it was carried, or touched by somebody
 constexpr double kRightM = 0.3;
 constexpr double kLookEveryS = 0.05;
+constexpr double kLatestS = 2.0;  // an estimate is no older
 constexpr double kMapResolutionM = 0.05;
 
 /// What is looked at while time passes.
@@ -39,6 +41,8 @@ class LoopWatch {
     const Pose2 pose = world_.map_from_robot();
     outcome_.moved_m += distance_between(last_pose_, pose);
     last_pose_ = pose;
+    truth_.emplace_back(now, pose);
+    if (seconds(now - truth_.front().first) > kLatestS) truth_.pop_front();
     const navigation::AllowedMotion allowed = daemon_.last_allowed();
     if (allowed.speed_m_per_s > 0.0) outcome_.stopped_after_s = seconds(now - begin_);
     if (seconds(end - now) <= 10.0) {
@@ -68,7 +72,11 @@ class LoopWatch {
 
  private:
   [[nodiscard]] double off_m() const {
-    return daemon_.estimate() ? distance_between(daemon_.estimate()->map_from_robot, last_pose_) : 0.0;
+    const std::optional<Estimate>& estimate = daemon_.estimate();
+    if (!estimate || truth_.empty()) return 0.0;
+    const auto then = std::find_if(truth_.begin(), truth_.end() - 1,
+                                   [&](const auto& truth) { return truth.first >= estimate->time; });
+    return distance_between(estimate->map_from_robot, then->second);
   }
   [[nodiscard]] bool is_right() const { return !has_map_ || off_m() < kRightM; }
 
@@ -76,6 +84,7 @@ class LoopWatch {
   const VirtualDaemon& daemon_;
   bool has_map_;
   Pose2 last_pose_;
+  std::deque<std::pair<Timestamp, Pose2>> truth_;  // of the last seconds
   Timestamp begin_{};
   Timestamp looked_{};
   std::size_t first_collision_ = 0;
@@ -124,6 +133,7 @@ LoopOutcome outcome_of(const LoopRun& run) {
   } else {
     params.map = std::make_shared<const OccupancyGrid>(simulation::start_map(run.scenario, kMapResolutionM));
   }
+  const auto first = params.map;
   VirtualDaemon daemon{world, std::move(params)};
   LoopWatch watch{world, daemon, !run.has_pilot_gone_wild};
   daemon.start();
@@ -134,7 +144,11 @@ LoopOutcome outcome_of(const LoopRun& run) {
   daemon.run(run.before_s, [&] { watch.look(end); });
   watch.count_from(world.now());
   daemon.run(run.for_s, [&] { watch.look(end); });
-  return watch.outcome();
+  LoopOutcome outcome = watch.outcome();
+  if (first == nullptr) return outcome;
+  for (const CellChange& change : changes_between(*first, *daemon.map()))
+    outcome.walls_freed += change.before == CellState::kOccupied && change.after == CellState::kFree ? 1 : 0;
+  return outcome;
 }
 
 }  // namespace deltamap::experiments

@@ -33,7 +33,8 @@ struct LoopOutcome {
   navigation::StopReason reason{};      ///< at the end
   double may_drive_at_end_share = 0.0;  ///< of the last 10 s, in which planners were told that they may drive
   std::map<std::string, int> stops;     ///< that began, by name, while the pose was within 0.3 m of the truth
-  double pose_off_m = 0.0;              ///< at the end
+  double pose_off_m = 0.0;              ///< of the newest estimate at its time, at the end
+  int walls_freed = 0;                  ///< cells of the first map that are occupied there, and free at the end
   std::string told;                     ///< the first line of the log that says that driving stops, after before_s
 };
 

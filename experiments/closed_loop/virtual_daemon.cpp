@@ -171,6 +171,10 @@ navigation::AllowedMotion VirtualDaemon::last_allowed() const {
   return process_ ? process_->desk.allowed() : navigation::AllowedMotion{};
 }
 
+std::shared_ptr<const OccupancyGrid> VirtualDaemon::map() const {
+  return process_ && process_->run ? process_->run->map().map() : params_.map;
+}
+
 std::optional<localization::motion::DriveCalibration> VirtualDaemon::calibration() const {
   return process_ && process_->run ? process_->run->localization().calibration() : std::nullopt;
 }

@@ -53,6 +53,8 @@ class VirtualDaemon {
   [[nodiscard]] Timestamp last_odometry() const { return last_odometry_; }
   [[nodiscard]] navigation::AllowedMotion last_allowed() const;
   [[nodiscard]] const std::optional<Scan>& last_scan() const { return last_scan_; }
+  /// As Δ-mapping has made it; null without a first map.
+  [[nodiscard]] std::shared_ptr<const OccupancyGrid> map() const;
   /// Of the newest localized scan; nothing without a map.
   [[nodiscard]] const std::optional<Estimate>& estimate() const { return estimate_; }
   /// What would be kept of wheels and mount; nothing without a map.

@@ -24,14 +24,17 @@ void cover(Faults& faults, double from_deg, double to_deg) {
   faults.laser.covered_from_rad = radians(from_deg);
   faults.laser.covered_to_rad = radians(to_deg);
 }
-void uncover(Faults& faults) { faults.laser.covered_from_rad = faults.laser.covered_to_rad = 0.0; }
+void uncover(Faults& faults) {
+  faults.laser.covered_from_rad = faults.laser.covered_to_rad = 0.0;
+  faults.laser.covered_answer = BeamKind::kBeyondMaximum;
+}
 
 void grip(Faults& faults, double share) { faults.body.left_grip = faults.body.right_grip = share; }
 void grip_again(Faults& faults) { grip(faults, 1.0); }
 
 constexpr double kPastTheFan_deg = 91.0;
 
-constexpr std::array<NamedFault, 30> kFaults{{
+constexpr std::array<NamedFault, 31> kFaults{{
     {"laser-repeats", "the newest scan again and again", "", 0, 0, 0, answer<Answer::kRepeated>, measure_again},
     {"laser-constant", "one range on all beams", "m", 5.0, 0.02, 80.0,
      [](Faults& f, double range_m) {
@@ -61,6 +64,14 @@ constexpr std::array<NamedFault, 30> kFaults{{
      [](Faults& f, double width_deg) { cover(f, 90.0 - width_deg, kPastTheFan_deg); }, uncover},
     {"laser-covered-right", "so much of the fan, from straight right on, is \"beyond maximum\"", "deg", 90.0, 1.0,
      180.0, [](Faults& f, double width_deg) { cover(f, -kPastTheFan_deg, width_deg - 90.0); }, uncover},
+    {"laser-post", "a post of the robot's own, 6 degrees wide and 0.15 m away, stands in view at", "deg", 60.0, -90.0,
+     90.0,
+     [](Faults& f, double at_deg) {
+       cover(f, at_deg - 3.0, at_deg + 3.0);
+       f.laser.covered_answer = BeamKind::kRange;
+       f.laser.covered_m = 0.15;
+     },
+     uncover},
     {"laser-scaled", "all ranges times", "times", 0.9, 0.1, 10.0,
      [](Faults& f, double times) { f.laser.scale = times; }, [](Faults& f) { f.laser.scale = 1.0; }},
     {"laser-stands", "sees from where it was when this began", "", 0, 0, 0,

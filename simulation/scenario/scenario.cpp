@@ -97,11 +97,12 @@ LaserSetup laser_of(YamlSection laser) {
   LaserSetup setup;
   setup.baud = static_cast<unsigned>(laser.whole_number("baud", static_cast<int>(setup.baud), 9600, 500000));
   expect_one_of(laser, "baud", setup.baud, std::array{9600u, 19200u, 38400u, 500000u}, "9600, 19200, 38400, 500000");
-  setup.field_deg = laser.whole_number("field_deg", setup.field_deg, 100, 180);
-  expect_one_of(laser, "field_deg", setup.field_deg, std::array{100, 180}, "100, 180");
+  setup.field_deg = laser.whole_number("field_deg", setup.field_deg, 90, 180);
+  expect_one_of(laser, "field_deg", setup.field_deg, std::array{90, 100, 180}, "90, 100, 180");
   setup.step_deg = laser.number("step_deg", setup.step_deg, 0.25, 1.0);
   expect_one_of(laser, "step_deg", setup.step_deg, std::array{0.25, 0.5, 1.0}, "0.25, 0.5, 1");
   if (setup.step_deg == 0.25 && setup.field_deg != 100) laser.refuse("step_deg", "of 0.25 needs 'field_deg' 100");
+  if (setup.field_deg == 90 && setup.step_deg != 0.5) laser.refuse("step_deg", "must be 0.5 where 'field_deg' is 90");
   const std::string units = laser.text("units", "cm");
   if (units != "cm" && units != "mm") laser.refuse("units", "must be cm or mm");
   setup.resolution_m = units == "mm" ? 0.001 : 0.01;

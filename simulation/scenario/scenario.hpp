@@ -36,8 +36,8 @@ struct RobotSetup {
 /// The LMS200 as it is switched on.
 struct LaserSetup {
   unsigned baud = 9600;        ///< one of 9600, 19200, 38400, 500000 (protocols.md B3)
-  int field_deg = 180;         ///< 100 or 180
-  double step_deg = 0.5;       ///< 0.25 (100° only), 0.5 or 1
+  int field_deg = 180;         ///< 90, 100 or 180
+  double step_deg = 0.5;       ///< 0.25 (100° only), 0.5 (90°: only that) or 1
   double resolution_m = 0.01;  ///< unit of a reading: 0.01 or 0.001 (B4 byte 6)
   double max_range_m = 80.0;   ///< 8, 16, 32 at 1 mm or 80, 160, 320 at 10 mm (B4 byte 5)
   RangeFinderParams optics;
