@@ -35,9 +35,11 @@ constexpr double kShoved_m_per_s2 = 3.0;
 constexpr double kSameTimeS = 1e-6;
 constexpr double kClaimedM = 0.01;  // by the wheels, since a scan: less tells nothing
 constexpr double kClaimedRad = 0.01;
-constexpr double kStands = 20.0;     // nats
+constexpr double kStands = 12.0;     // nats: on real logs no robot that drives has reached one
 constexpr double kTurningM = 0.002;  // from scan to scan: wheels that turn
-constexpr double kAnchorM = 1.0;     // claimed since a scan that others are held against: then another is taken
+constexpr double kAnchorM = 0.4;     // claimed since a scan that others are held against: then another is taken
+constexpr double kTellsMore = 2.0;   // nats: then that goes on with what the scans before it have told,
+constexpr double kMostTold = 30.0;   // of which no more is kept
 
 constexpr double kDisagree = 25.0;  // squared deviations
 constexpr std::array kWindowsS{0.6, 1.5};
@@ -136,8 +138,8 @@ LaserMotion LaserOdometer::observe(const Scan& scan, std::span<const RayInRobot>
   const Step step = step_to(scan.time, wheels);
   if (stands_still(scan, rays, step)) {
     stand(answer, step);
-    const bool is_clear = standing_odds_ > kStands && anchor_.claimed.position().norm() > 0.5 * kAnchorM;
-    if (is_clear) anchor(scan, rays);
+    const bool is_clear = anchor_.odds + standing_odds_ > kStands && anchor_.claimed.position().norm() > 0.5 * kAnchorM;
+    if (is_clear) go_on_standing(scan, rays);
     return answer;
   }
   const Pose2 predicted = pose_ * step.motion;
@@ -149,7 +151,12 @@ LaserMotion LaserOdometer::observe(const Scan& scan, std::span<const RayInRobot>
   if (!answer.is_lost) usual_inliers_ += (usual_inliers_ == 0.0 ? 1.0 : kNewest) * (fitted.inliers - usual_inliers_);
   believe(fitted, step, answer);
   const bool has_moved = standing_odds_ <= Standstill::kClearlyMoved && anchor_.claimed != Pose2{};
-  if (has_moved || anchor_.claimed.position().norm() > kAnchorM || !standstill_.has_kept()) anchor(scan, rays);
+  const bool is_far = anchor_.claimed.position().norm() > kAnchorM;
+  if (is_far && standing_odds_ > kTellsMore) {
+    go_on_standing(scan, rays);
+  } else if (is_far || has_moved || !standstill_.has_kept()) {
+    anchor(scan, rays);
+  }
   remember(points, answer);
   return answer;
 }
@@ -190,8 +197,8 @@ bool LaserOdometer::stands_still(const Scan& scan, std::span<const RayInRobot> r
     standing_odds_ = Standstill::kClearlyMoved;
   }
   // Once it is clear, it stands as long as nothing speaks for a motion; without any more sign the wheels rule again.
-  stands_ = standing_odds_ > kStands ||
-            (stands_ && standing_odds_ > Standstill::kClearlyMoved && claimed_m < kAnchorM && is_claimed);
+  stands_ = standing_odds_ > Standstill::kClearlyMoved && is_claimed &&
+            (anchor_.odds + standing_odds_ > kStands || (stands_ && claimed_m < kAnchorM));
   stood_m_ = stands_ && step.way_m() > kTurningM ? stood_m_ + step.way_m() : 0.0;
   return stands_;
 }
@@ -213,6 +220,14 @@ void LaserOdometer::stand(LaserMotion& answer, const Step& step) {
 void LaserOdometer::anchor(const Scan& scan, std::span<const RayInRobot> rays) {
   standstill_.keep(scan, rays);
   anchor_ = {pose_, deviation_, time_s_, {}};
+}
+
+/// The robot may still stand where it was at the anchor; only the kept scan is another one. What several scans tell a
+/// little of, in a corridor say, adds up.
+void LaserOdometer::go_on_standing(const Scan& scan, std::span<const RayInRobot> rays) {
+  standstill_.keep(scan, rays);
+  anchor_.claimed = {};
+  anchor_.odds = std::min(anchor_.odds + standing_odds_, kMostTold);
 }
 
 ScanFit LaserOdometer::fit(std::span<const LinePoint> points, const Pose2& predicted, const Step& step) const {

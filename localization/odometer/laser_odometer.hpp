@@ -76,13 +76,15 @@ class LaserOdometer {
     Pose2 start_from_robot;
     PoseCovariance deviation = PoseCovariance::Zero();
     double time_s = 0.0;
-    Pose2 claimed;  // by the wheels since then
+    Pose2 claimed;      // by the wheels since the scan that is kept
+    double odds = 0.0;  // of standing, nats, by the scans that were kept before that one
   };
 
   [[nodiscard]] Step step_to(Timestamp time, const std::optional<WheelsAt>& wheels);
   [[nodiscard]] bool stands_still(const Scan& scan, std::span<const RayInRobot> rays, const Step& step);
   void stand(LaserMotion& answer, const Step& step);
   void anchor(const Scan& scan, std::span<const RayInRobot> rays);
+  void go_on_standing(const Scan& scan, std::span<const RayInRobot> rays);
   [[nodiscard]] ScanFit fit(std::span<const LinePoint> points, const Pose2& predicted, const Step& step) const;
   [[nodiscard]] bool fits_nowhere(const ScanFit& fitted, const Step& step) const;
   [[nodiscard]] Compared compare(const ScanFit& fitted, const Step& step, LaserMotion& answer) const;
@@ -111,7 +113,7 @@ class LaserOdometer {
 
   Standstill standstill_;
   Anchor anchor_;
-  double standing_odds_ = Standstill::kClearlyMoved;  // of the newest scan
+  double standing_odds_ = Standstill::kClearlyMoved;  // of the newest scan beside the kept one
   bool stands_ = false;                               // though its wheels turn
   double stood_m_ = 0.0;                              // claimed meanwhile
 };

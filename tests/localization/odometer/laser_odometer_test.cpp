@@ -77,6 +77,34 @@ TEST(LaserOdometer, LetsTheWheelsRuleAlongABareCorridor) {
   EXPECT_GT(drive.step(kForward).laser_covariance(0, 0), 1.0);
 }
 
+/// 40 m long and 2 m wide; both walls go back by a cell at a few doors.
+OccupancyGrid corridor_with_doors() {
+  std::vector<std::string> lines(26, std::string(400, '.'));
+  for (const int row : {0, 1, 2, 23, 24, 25}) lines[static_cast<std::size_t>(row)] = std::string(400, '#');
+  for (const int door : {40, 110, 150, 235, 330}) {
+    for (const int row : {1, 2})
+      lines[static_cast<std::size_t>(row)].replace(static_cast<std::size_t>(door), 9, std::string(9, '.'));
+    lines[23].replace(static_cast<std::size_t>(door + 40), 9, std::string(9, '.'));
+  }
+  return test::drawn_grid(lines, 0.1);
+}
+
+TEST(LaserOdometer, AddsUpTheLittleThatScansOfACorridorTellOfARobotThatStands) {
+  const OccupancyGrid world = corridor_with_doors();
+  for (const double start_x : {10.0, 13.0, 20.0}) {
+    const Pose2 start{start_x, 1.3, 0.0};
+    OdometerDrive drive{world, start};
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(drive.step(kForward).stood_m, 0.0) << "drives";
+    const Pose2 stands = drive.truth();
+    for (int i = 0; i < 75; ++i) (void)drive.step({}, kForward);
+    EXPECT_LT(distance_between(drive.truth(), stands), 1e-9);
+    EXPECT_LT(off(start, stands, drive.odom_from_robot()).position().norm(), 0.2) << start_x << ": 6 m by the wheels";
+    for (int i = 0; i < 20; ++i) (void)drive.step(kForward);
+    EXPECT_EQ(drive.step(kForward).stood_m, 0.0) << "drives on";
+    EXPECT_LT(off(start, drive.truth(), drive.odom_from_robot()).position().norm(), 0.3) << start_x;
+  }
+}
+
 TEST(LaserOdometer, GoesOnWhereTheOdometryBeginsAnew) {
   const OccupancyGrid world = test::room_with_pillar();
   OdometerDrive drive{world, kInRoom};
