@@ -50,6 +50,17 @@ class Links(unittest.TestCase):
                 with self.subTest("%s: %s" % (file.relative_to(ROOT), path)):
                     self.assertTrue(any(place == target or place in target.parents for place in places))
 
+    def test_of_installed_documents_lead_to_files_that_are_not_compressed(self):
+        """dh_compress gives whatever is larger than 4 KiB another name, but for pictures, pages and what debian/rules leaves out."""
+        left_out = re.findall(r"--exclude=(\S+)", (ROOT / "debian/rules").read_text())
+        stay = {".png", ".gif", ".jpg", ".html", ".gz"}
+        for file in (file for place in installed() for file in ([place] if place.is_file() else place.rglob("*.md"))):
+            for path, _ in links(file):
+                target = (file.parent / path).resolve()
+                if target.is_file() and target.stat().st_size > 4096 and target.suffix not in stay:
+                    with self.subTest("%s: %s" % (file.relative_to(ROOT), path)):
+                        self.assertTrue(any(part in "/" + str(target.relative_to(ROOT)) for part in left_out))
+
 
 if __name__ == "__main__":
     unittest.main()
