@@ -44,26 +44,46 @@ void add_estimate(Json& json, const Telemetry& t) {
   const auto covariance = [&](std::size_t i) { return estimate.covariance[i].value(); };
   const bool is_known = t.localized.value() > 0;
   json["state"] = is_known ? Json(name_of(static_cast<LocalizerState>(estimate.state.value()))) : Json("no scan yet");
+  for (const char* name : {"pose", "covariance", "belief", "particles", "n_eff", "w_avg", "fit", "revision"}) {
+    json[name] = nullptr;
+  }
+  if (!is_known) return;
   json["pose"] = pose_json(estimate.x_m.value(), estimate.y_m.value(), estimate.heading_rad.value());
   json["covariance"] = {{"xx_m2", covariance(0)}, {"xy_m2", covariance(1)},    {"xh_m_rad", covariance(2)},
                         {"yy_m2", covariance(3)}, {"yh_m_rad", covariance(4)}, {"hh_rad2", covariance(5)}};
   json["belief"] = belief_json(estimate);
   json["particles"] = estimate.particles.value();
   json["n_eff"] = estimate.n_eff.value();
-  const bool is_told = is_known && t.fit.value() >= 0.0;  // by a beam; else the weight is an older scan's
-  json["w_avg"] = is_told ? Json(estimate.w_avg.value()) : Json(nullptr);
-  json["fit"] = is_told ? Json(t.fit.value()) : Json(nullptr);
   json["revision"] = estimate.revision.value();
+  if (t.fit.value() < 0.0) return;  // no beam tells; the weight is an older scan's
+  json["w_avg"] = estimate.w_avg.value();
+  json["fit"] = t.fit.value();
 }
 
-Json gate_json(const GateGauges& gate) {
-  const auto now = static_cast<mapping::gate::GateReason>(gate.reason.value());
-  const mapping::gate::GateTimes times = gate.times();
+/// Where no scan votes, the gate's last word tells nothing.
+Json gate_json(const Telemetry& t, const Settings& settings) {
+  const auto now = gate_now(t, settings.mapping.enabled);
+  const mapping::gate::GateTimes times = t.gate.times();
   Json json;
-  json["open"] = now == mapping::gate::GateReason::kOpen;
-  json["reason"] = now == mapping::gate::GateReason::kOpen ? Json(nullptr) : Json(name_of(now));
+  json["open"] = false;
+  if (!now) {
+    json["reason"] = settings.mapping.enabled ? "paused" : "off";
+  } else if (t.localized.value() == 0 || !t.laser_up.value()) {
+    json["reason"] = "no scans";
+  } else {
+    json["open"] = *now == mapping::gate::GateReason::kOpen;
+    json["reason"] = *now == mapping::gate::GateReason::kOpen ? Json(nullptr) : Json(name_of(*now));
+  }
   json["observed_s"] = mapping::gate::observed_s(times);
   json["shut_s"] = mapping::gate::shut_by_reason(times);
+  return json;
+}
+
+/// Why each device that is down does not answer.
+Json port_troubles_json(const Telemetry& t) {
+  Json json = Json::object();
+  if (!t.robot_up.value()) json["robot"] = t.robot_trouble.line();
+  if (!t.laser_up.value()) json["laser"] = t.laser_trouble.line();
   return json;
 }
 
@@ -104,13 +124,14 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
                    {"stored_scans", t.stored_scans.value()},
                    {"r_d", t.r_d.value()}};
   json["temporary"] = {{"standing_blocks", t.transients_standing.value()}, {"gone_blocks", t.transients_gone.value()}};
-  json["gate"] = gate_json(t.gate);
+  json["gate"] = gate_json(t, settings);
   json["calibration"] = Json::parse(calibration_json(t.calibration.get()));
   json["scans"] = t.scans.value();
   json["localized"] = t.localized.value();
   json["odometry"] = t.odometry.value();
   for (const auto& [name, count] : drops_of(counts_of(t))) json["drops"][name] = count;
   json["ports"] = {{"robot", t.robot_up.value() ? "up" : "down"}, {"laser", t.laser_up.value() ? "up" : "down"}};
+  json["port_troubles"] = port_troubles_json(t);
   json["drive"] = !t.drives.value()   ? "off"
                   : t.by_hand.value() ? "by hand"
                                       : navigation::name_of(settings.navigation.mode);
@@ -122,8 +143,9 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["forbidden_by"] = navigation::name_of(forbids);
   json["told"] = {{"speed_m_per_s", t.told_speed_m_per_s.value()},
                   {"turn_rate_rad_per_s", t.told_turn_rate_rad_per_s.value()}};
-  json["battery_v"] = t.battery_v.value();
-  json["latency_ms"] = t.latency_s.value() * 1e3;
+  const bool tells_battery = t.robot_up.value() && t.battery_v.value() > 0.0;
+  json["battery_v"] = tells_battery ? Json(t.battery_v.value()) : Json(nullptr);
+  json["latency_ms"] = t.localized.value() > 0 ? Json(t.latency_s.value() * 1e3) : Json(nullptr);
   json["since_start_s"] = since_start_s;
   json["log_level"] = name_of(static_cast<LogLevel>(t.log_level.value()));
   json["line"] = status_line(t);

@@ -107,7 +107,7 @@ void DashboardDesk::refresh() {
 
 void DashboardDesk::refresh_scan(Timestamp now) {
   if (!board_.fetch(scan_)) return;
-  news_.pose.set(pose_message(scan_, telemetry_));
+  news_.pose.set(pose_message(scan_, telemetry_, settings_.mapping.enabled));
   if (!is_due(scan_sent_, now, kScanPeriod_s)) return;
   scan_sent_ = now;
   news_.scan.set(scan_message(scan_), true);

@@ -153,6 +153,7 @@ bool LiveBoard::show(const std::shared_ptr<const TransientObstacles>& transients
 void LiveBoard::show(const MapRevision* revision, const ChangeNote& note) {
   const std::scoped_lock lock{mutex_};
   changes_.add(note);
+  ++(note.revision ? change_counts_.accepted : change_counts_.refused);
   if (revision == nullptr) return;
   map_ = revision->map;
   revision_ = revision->number;
@@ -184,6 +185,11 @@ LiveBoard::Past<LiveSample> LiveBoard::samples_from(std::uint64_t number, std::s
 LiveBoard::Past<ChangeNote> LiveBoard::changes_from(std::uint64_t number, std::size_t most) const {
   const std::scoped_lock lock{mutex_};
   return changes_.from(number, most);
+}
+
+LiveBoard::ChangeCounts LiveBoard::change_counts() const {
+  const std::scoped_lock lock{mutex_};
+  return change_counts_;
 }
 
 }  // namespace deltamap::daemon

@@ -132,6 +132,12 @@ class LiveBoard {
   /// At most `most` items, the oldest first.
   [[nodiscard]] Past<LiveSample> samples_from(std::uint64_t number, std::size_t most) const;
   [[nodiscard]] Past<ChangeNote> changes_from(std::uint64_t number, std::size_t most) const;
+  /// Of all changes since the start, the forgotten ones too.
+  struct ChangeCounts {
+    std::uint64_t accepted = 0;
+    std::uint64_t refused = 0;
+  };
+  [[nodiscard]] ChangeCounts change_counts() const;
 
  private:
   /// The newest `capacity` of many.
@@ -168,6 +174,7 @@ class LiveBoard {
   Ring<CellBox> boxes_{kBoxesKept};
   Ring<LiveSample> samples_;
   Ring<ChangeNote> changes_;
+  ChangeCounts change_counts_;
 };
 
 }  // namespace deltamap::daemon

@@ -110,8 +110,8 @@ std::string map_message(const GridGeometry& geometry, std::uint32_t revision) {
   return text_of(json);
 }
 
-std::string pose_message(const LiveScan& scan, const Telemetry& telemetry) {
-  PoseNews news{scan.row, scan.latency_s, static_cast<mapping::gate::GateReason>(telemetry.gate.reason.value()), {}};
+std::string pose_message(const LiveScan& scan, const Telemetry& telemetry, bool mapping_enabled) {
+  PoseNews news{scan.row, scan.latency_s, gate_now(telemetry, mapping_enabled), {}};
   if (telemetry.drives.value() && !telemetry.by_hand.value()) {
     news.pilot = {telemetry.wanted_speed_m_per_s.value(), telemetry.wanted_turn_rate_rad_per_s.value()};
   }
@@ -214,10 +214,12 @@ std::string samples_message(const LiveBoard::Past<LiveSample>& past) {
   return bytes;
 }
 
-std::string changes_message(const LiveBoard::Past<ChangeNote>& past) {
+std::string changes_message(const LiveBoard::Past<ChangeNote>& past, const LiveBoard::ChangeCounts& counts) {
   Json json;
   json["type"] = "changes";
   json["first"] = past.first;
+  json["accepted"] = counts.accepted;
+  json["refused"] = counts.refused;
   json["changes"] = list_of(past.items);
   return text_of(json);
 }

@@ -24,7 +24,7 @@ struct RunName {
 /// "map": the frame in which boxes of cells lie. Whoever gets it forgets all cells.
 [[nodiscard]] std::string map_message(const GridGeometry& geometry, std::uint32_t revision);
 /// "pose": the newest pose, what is believed of it, and the write gate.
-[[nodiscard]] std::string pose_message(const LiveScan& scan, const Telemetry& telemetry);
+[[nodiscard]] std::string pose_message(const LiveScan& scan, const Telemetry& telemetry, bool mapping_enabled);
 /// Binary: the pose of a scan and where its beams ended.
 [[nodiscard]] std::string scan_message(const LiveScan& scan);
 /// Binary: the particles that stand for all of them.
@@ -39,8 +39,10 @@ struct RunName {
 [[nodiscard]] std::string status_message(const std::string& status_json);
 /// Binary: rows of figures, oldest first.
 [[nodiscard]] std::string samples_message(const LiveBoard::Past<LiveSample>& past);
-/// "changes": a list as in changes.jsonl, oldest first, and the number of its first.
-[[nodiscard]] std::string changes_message(const LiveBoard::Past<ChangeNote>& past);
+/// "changes": a list as in changes.jsonl, oldest first, the number of its first, and how many there were since the
+/// start.
+[[nodiscard]] std::string changes_message(const LiveBoard::Past<ChangeNote>& past,
+                                          const LiveBoard::ChangeCounts& counts);
 
 /// /api/history: M_0 … M_k of this run.
 [[nodiscard]] std::string history_json(const LiveBoard& board);

@@ -48,7 +48,7 @@ std::optional<Message> LiveStream::next() {
 std::optional<Message> LiveStream::next_past() {
   if (const auto past = board_.changes_from(changes_, kChangesAtOnce); !past.items.empty()) {
     changes_ = past.next();
-    return message_of(changes_message(past), false);
+    return message_of(changes_message(past, board_.change_counts()), false);
   }
   if (const auto past = board_.samples_from(samples_, kSamplesAtOnce); !past.items.empty()) {
     samples_ = past.next();

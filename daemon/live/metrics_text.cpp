@@ -57,7 +57,8 @@ void add_scans(Text& text, const Telemetry& t) {
                                                                        {"tracked_lost", &t.tracked_lost},
                                                                        {"recording_lost", &t.recording_lost}};
   for (const auto& [kind, count] : drops) text.row("dropped_total", label("kind", kind), counted(*count));
-  text.gauge("latency_seconds", "From the newest scan's last byte to its pose.", t.latency_s.value());
+  if (t.localized.value() > 0)
+    text.gauge("latency_seconds", "From the newest scan's last byte to its pose.", t.latency_s.value());
 }
 
 void add_estimate(Text& text, const EstimateGauges& e) {
@@ -80,8 +81,8 @@ void add_map(Text& text, const Telemetry& t) {
   text.gauge("divergence_ratio", "r_d of the newest scan.", t.r_d.value());
   text.gauge("stored_scans", "Scans that the running phase has stored.", t.stored_scans.value());
   text.gauge("mapping_paused", "1 while an operator has paused mapping.", t.paused.value() ? 1.0 : 0.0);
-  const auto now = static_cast<mapping::gate::GateReason>(t.gate.reason.value());
-  text.gauge("gate_open", "1 while the map may be written.", now == mapping::gate::GateReason::kOpen ? 1.0 : 0.0);
+  const bool is_open = t.laser_up.value() && gate_now(t, true) == mapping::gate::GateReason::kOpen;
+  text.gauge("gate_open", "1 while the map may be written.", is_open ? 1.0 : 0.0);
   text.head("gate_seconds_total", "Time of the write gate, by what held it closed (open: nothing).", "counter");
   const mapping::gate::GateTimes times = t.gate.times();
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -96,7 +97,8 @@ void add_machine(Text& text, const Telemetry& t, double since_start_s) {
   text.head("port_up", "1 while the device on the port answers.", "gauge");
   text.row("port_up", label("port", "robot"), t.robot_up.value() ? 1.0 : 0.0);
   text.row("port_up", label("port", "laser"), t.laser_up.value() ? 1.0 : 0.0);
-  text.gauge("battery_volts", "Of the robot.", t.battery_v.value());
+  if (t.robot_up.value() && t.battery_v.value() > 0.0)
+    text.gauge("battery_volts", "Of the robot.", t.battery_v.value());
   text.gauge("resident_bytes", "Resident memory of the daemon.", static_cast<double>(resident_bytes()));
   text.counter("cpu_seconds_total", "Processor time of the daemon.", process_cpu_s());
   text.gauge("uptime_seconds", "Since the daemon's start.", since_start_s);
@@ -109,8 +111,9 @@ void add_machine(Text& text, const Telemetry& t, double since_start_s) {
 std::string metrics_text(const Telemetry& telemetry, double since_start_s) {
   Text text;
   add_scans(text, telemetry);
-  add_estimate(text, telemetry.estimate);
-  if (telemetry.fit.value() >= 0.0)  // else it is an older scan's
+  const bool is_known = telemetry.localized.value() > 0;
+  if (is_known) add_estimate(text, telemetry.estimate);
+  if (is_known && telemetry.fit.value() >= 0.0)  // else it is an older scan's
     text.gauge("scan_weight_ratio", "w_avg of the newest scan.", telemetry.estimate.w_avg.value());
   add_map(text, telemetry);
   add_machine(text, telemetry, since_start_s);

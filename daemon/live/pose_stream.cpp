@@ -30,13 +30,8 @@ PoseStream::PoseStream(const Settings& settings, const Telemetry& telemetry)
 
 void PoseStream::show(const LocalizationRow& row, double latency_s) {
   if (!lines_.has_clients()) return;
-  (void)news_.try_send({row, latency_s, gate(), {}, forbidden_by(telemetry_)});
+  (void)news_.try_send({row, latency_s, gate_now(telemetry_, mapping_enabled_), {}, forbidden_by(telemetry_)});
   lines_.wake();
-}
-
-std::optional<mapping::gate::GateReason> PoseStream::gate() const {
-  if (!mapping_enabled_ || telemetry_.paused.value()) return std::nullopt;
-  return static_cast<mapping::gate::GateReason>(telemetry_.gate.reason.value());
 }
 
 std::unique_ptr<PoseStream> begun_pose_stream(const Settings& settings, const Telemetry& telemetry,

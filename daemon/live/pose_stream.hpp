@@ -33,8 +33,6 @@ class PoseStream {
   }
 
  private:
-  [[nodiscard]] std::optional<mapping::gate::GateReason> gate() const;
-
   bool mapping_enabled_;
   const Telemetry& telemetry_;
   Channel<PoseNews> news_{64};

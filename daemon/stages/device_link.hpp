@@ -31,9 +31,9 @@ class DeviceLink {
  public:
   struct Hooks {
     PortOpener open;
-    drivers::port::RecordSink record;          ///< every chunk and note
-    std::function<void(Output&)> on_messages;  ///< what the session decoded
-    std::function<void()> on_lost;             ///< the port has failed or could not be opened
+    drivers::port::RecordSink record;                     ///< every chunk and note
+    std::function<void(Output&)> on_messages;             ///< what the session decoded
+    std::function<void(const std::string& why)> on_lost;  ///< the port has failed or could not be opened
     // A short line each.
     std::function<void(const std::string&)> log;
     std::function<void(const std::string&)> warn;  ///< the device is gone, cannot be had, or needs its owner
@@ -158,7 +158,7 @@ class DeviceLink {
 
   void retry(const std::string& reason) {
     if (closed_) return;
-    hooks_.on_lost();
+    hooks_.on_lost(reason);
     const auto pause = reconnect_.failed(reason, drivers::port::port_clock_now());
     if (pause.log) hooks_.warn(named(*pause.log));
     retry_timer_.expires_after(std::max(Duration{0}, pause.try_again_at - drivers::port::port_clock_now()));

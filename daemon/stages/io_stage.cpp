@@ -47,14 +47,14 @@ struct IoStage::State {
               PortId::kRobot,
               PioneerSession{robot_params(settings, kept), wiring.mode},
               {opener(), recorder(), [this](PioneerOutput& out) { take(out); },
-               [this] { wiring.telemetry.robot_up.set(false); }, wiring.log, wiring.warn,
-               [this](const std::string& port) { finder.answered(PortId::kRobot, port); }}},
+               [this](const std::string& why) { lose(wiring.telemetry.robot_up, wiring.telemetry.robot_trouble, why); },
+               wiring.log, wiring.warn, [this](const std::string& port) { finder.answered(PortId::kRobot, port); }}},
         laser{loop,
               PortId::kLaser,
               Lms200Session{settings.laser.session, wiring.mode},
               {opener(), recorder(), [this](Lms200Output& out) { take(out); },
-               [this] { wiring.telemetry.laser_up.set(false); }, wiring.log, wiring.warn,
-               [this](const std::string& port) { finder.answered(PortId::kLaser, port); }}},
+               [this](const std::string& why) { lose(wiring.telemetry.laser_up, wiring.telemetry.laser_trouble, why); },
+               wiring.log, wiring.warn, [this](const std::string& port) { finder.answered(PortId::kLaser, port); }}},
         drive{drives,
               settings.navigation.safety,
               {.session = robot.session(),
@@ -74,6 +74,19 @@ struct IoStage::State {
     };
   }
 
+  static void lose(Gauge<bool>& is_up, Notice& trouble, const std::string& why) {
+    is_up.set(false);
+    trouble.set(why);
+  }
+
+  /// Of a device that does not answer (yet), what its session said last: that the ports are swapped, for one.
+  static void tell_state(bool up, Notice& trouble, const drivers::SessionOutput& out) {
+    if (up) return trouble.set("");
+    for (const auto* lines : {&out.log, &out.warnings}) {
+      if (!lines->empty()) trouble.set(lines->back());
+    }
+  }
+
   void take(PioneerOutput& out) {
     Telemetry& telemetry = wiring.telemetry;
     const Timestamp now = drivers::port::port_clock_now();
@@ -89,6 +102,7 @@ struct IoStage::State {
     const bool up = drive.robot_is_connected();
     if (up && !telemetry.robot_up.value()) robot.tell_connected();
     telemetry.robot_up.set(up);
+    tell_state(up, telemetry.robot_trouble, out.output);
     drive.obey_permission(now);
   }
 
@@ -109,6 +123,7 @@ struct IoStage::State {
       drive.set_nominal_scan_period(laser.session().nominal_period_s());
     }
     telemetry.laser_up.set(up);
+    tell_state(up, telemetry.laser_trouble, out.output);
   }
 
   void note(const Decision& decision) {

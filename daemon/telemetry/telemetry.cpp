@@ -13,6 +13,17 @@ const char* up(const Gauge<bool>& device) { return device.value() ? "up" : "--";
 
 const char* phase_mark(const Telemetry& t) { return t.paused.value() ? "-" : t.in_phase.value() ? "*" : ""; }
 
+std::string estimate_words(const EstimateGauges& e) {
+  const auto state = name_of(static_cast<LocalizerState>(e.state.value()));
+  const auto verdict = name_of(static_cast<PoseVerdict>(e.verdict.value()));
+  char words[224];
+  (void)std::snprintf(
+      words, sizeof words, "%.*s pose=%.*s x=%.2f y=%.2f heading=%.0f n_eff=%.0f/%" PRIu32 " w_avg=%.3f",
+      static_cast<int>(state.size()), state.data(), static_cast<int>(verdict.size()), verdict.data(), e.x_m.value(),
+      e.y_m.value(), degrees(e.heading_rad.value()), e.n_eff.value(), e.particles.value(), e.w_avg.value());
+  return words;
+}
+
 }  // namespace
 
 std::string_view name_of(LocalizerState state) {
@@ -45,6 +56,11 @@ navigation::StopReason forbidden_by(const Telemetry& telemetry) {
   if (unfit != StopReason::kNone) return unfit;
   return telemetry.localized.value() > 0 ? static_cast<StopReason>(telemetry.pose_stop.value())
                                          : StopReason::kPoseUnknown;
+}
+
+std::optional<mapping::gate::GateReason> gate_now(const Telemetry& telemetry, bool mapping_enabled) {
+  if (!mapping_enabled || telemetry.paused.value()) return std::nullopt;
+  return static_cast<mapping::gate::GateReason>(telemetry.gate.reason.value());
 }
 
 void BeamCountGauges::set(const BeamCounts& counts) {
@@ -120,21 +136,20 @@ ScanCounts counts_of(const Telemetry& t) {
 }
 
 std::string status_line(const Telemetry& t) {
-  const EstimateGauges& e = t.estimate;
-  const auto state = name_of(static_cast<LocalizerState>(e.state.value()));
-  const auto verdict = name_of(static_cast<PoseVerdict>(e.verdict.value()));
   std::uint64_t drops = 0;
   for (const auto& [name, count] : drops_of(counts_of(t))) drops += count;
-  char line[352];
-  const int length = std::snprintf(
-      line, sizeof line,
-      "robot=%s laser=%s scans=%" PRIu64 " %.*s pose=%.*s x=%.2f y=%.2f heading=%.0f n_eff=%.0f/%" PRIu32
-      " w_avg=%.3f map=%" PRIu32 " refused=%" PRIu32 " phase=%" PRIu32 "%s drops=%" PRIu64 " latency_ms=%.1f",
-      up(t.robot_up), up(t.laser_up), t.scans.value(), static_cast<int>(state.size()), state.data(),
-      static_cast<int>(verdict.size()), verdict.data(), e.x_m.value(), e.y_m.value(), degrees(e.heading_rad.value()),
-      e.n_eff.value(), e.particles.value(), e.w_avg.value(), e.revision.value(), t.refused.value(), t.phase.value(),
-      phase_mark(t), drops, t.latency_s.value() * 1e3);
-  return {line, static_cast<std::size_t>(length)};
+  const bool is_known = t.localized.value() > 0;
+  const std::uint32_t revision = is_known ? t.estimate.revision.value() : t.newest_revision.value();
+  char line[160];
+  (void)std::snprintf(line, sizeof line, "robot=%s laser=%s scans=%" PRIu64 " ", up(t.robot_up), up(t.laser_up),
+                      t.scans.value());
+  std::string text = line + (is_known ? estimate_words(t.estimate) : "no scan yet");
+  (void)std::snprintf(line, sizeof line, " map=%" PRIu32 " refused=%" PRIu32 " phase=%" PRIu32 "%s drops=%" PRIu64,
+                      revision, t.refused.value(), t.phase.value(), phase_mark(t), drops);
+  text += line;
+  if (!is_known) return text;
+  (void)std::snprintf(line, sizeof line, " latency_ms=%.1f", t.latency_s.value() * 1e3);
+  return text + line;
 }
 
 }  // namespace deltamap::daemon

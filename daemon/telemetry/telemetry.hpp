@@ -23,6 +23,8 @@ namespace deltamap::daemon {
 template <typename T>
 class Gauge {
  public:
+  Gauge() = default;
+  explicit Gauge(T value) : value_{value} {}
   void set(T value) { value_.store(value, std::memory_order_relaxed); }
   /// By its only writer.
   void add(T amount) { set(value() + amount); }
@@ -60,7 +62,8 @@ struct CalibrationGauges {
 };
 
 struct GateGauges {
-  Gauge<std::uint8_t> reason;  ///< mapping::GateReason
+  /// mapping::gate::GateReason; before the first scan nobody knows where the robot is.
+  Gauge<std::uint8_t> reason{static_cast<std::uint8_t>(mapping::gate::GateReason::kSearching)};
   std::array<Gauge<double>, mapping::gate::kGateReasons> times_s;
   void set(mapping::gate::GateReason now, const mapping::gate::GateTimes& times);
   [[nodiscard]] mapping::gate::GateTimes times() const;
@@ -69,10 +72,11 @@ struct GateGauges {
 struct Telemetry {
   // io thread
   Gauge<bool> robot_up, laser_up;
-  Gauge<bool> drives;                ///< the pilot's commands are listened to
-  Gauge<bool> by_hand;               ///< a person's are, and the pilot's are not
-  Notice never_driven;               ///< why this robot is not driven, whatever a person says
-  Gauge<std::uint8_t> drive_switch;  ///< drivers::pioneer::DriveSwitch: what a person said last
+  Notice robot_trouble, laser_trouble;  ///< why the device does not answer; what was said last of it while it is down
+  Gauge<bool> drives;                   ///< the pilot's commands are listened to
+  Gauge<bool> by_hand;                  ///< a person's are, and the pilot's are not
+  Notice never_driven;                  ///< why this robot is not driven, whatever a person says
+  Gauge<std::uint8_t> drive_switch;     ///< drivers::pioneer::DriveSwitch: what a person said last
   Gauge<double> told_speed_m_per_s, told_turn_rate_rad_per_s;  ///< what the robot was told last
   Gauge<double> battery_v;
   Gauge<std::uint8_t> stop_reason;       ///< navigation::StopReason
@@ -111,9 +115,13 @@ struct Telemetry {
   return forbidden_by(telemetry) == navigation::StopReason::kNone;
 }
 
+/// What the write gate is like; nothing: no scan votes, since mapping is off or paused.
+[[nodiscard]] std::optional<mapping::gate::GateReason> gate_now(const Telemetry& telemetry, bool mapping_enabled);
+
 [[nodiscard]] ScanCounts counts_of(const Telemetry& telemetry);
 
-/// One line for a person: devices, state, verdict and pose, N_eff, w_avg, revision, Δ-phase, drops, latency.
+/// One line for a person: devices, state, verdict and pose, N_eff, w_avg, revision, Δ-phase, drops, latency; before the
+/// first scan nothing of what only a scan tells.
 [[nodiscard]] std::string status_line(const Telemetry& telemetry);
 
 [[nodiscard]] std::string_view name_of(LocalizerState state);

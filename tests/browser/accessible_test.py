@@ -36,7 +36,7 @@ class PageForAll(PageCase):
 
     def test_the_check_finds_what_is_wrong(self):
         browser = self.open()
-        browser.execute_script("""document.querySelector("#fit").textContent = ""; document.querySelector("#fit").removeAttribute("aria-label");
+        browser.execute_script("""document.querySelector("#fit").textContent = ""; for (const name of ["aria-label", "title"]) document.querySelector("#fit").removeAttribute(name);
                                   document.querySelector("#status-title").style.color = "#dddddd"; document.querySelector("#status-title").style.background = "#ffffff";
                                   document.querySelector("#save").id = "pause"; document.querySelector("#zoom-in").style.cssText = "min-width:0;width:9px;padding:0";
                                   document.querySelector("#status-section").removeAttribute("tabindex"); document.querySelector("#status-section").style.height = "60px" """)

@@ -140,6 +140,19 @@ class ViewTest(unittest.TestCase):
             self.assertEqual(browser.errors(), [])
         self.assertEqual(view.process.returncode, 0)
 
+    def test_one_slider_walks_through_time_and_revisions(self):
+        with View(self.place / "run") as view:
+            browser = self.open(view.url, 1440, 900)
+            browser.wait(f"{HAS_MAP} && {IS_READ}")
+            browser.execute_script("document.querySelector('#history').click()")
+            browser.wait("window.deltamap.history.is_open && window.deltamap.history.maps")
+            self.assertEqual(browser.execute_script("return [...document.querySelectorAll('input[type=range]')].filter((one) => one.checkVisibility()).map((one) => one.id)"), ["run-slider"])
+            self.scrub(browser, 0)
+            browser.wait("window.deltamap.history.number === 0 && window.deltamap.history.maps")
+            self.scrub(browser, 1)
+            browser.wait("window.deltamap.history.number > 0 && window.deltamap.history.maps")
+            self.assertEqual(browser.errors(), [])
+
     def test_a_recording_that_is_cut_is_shown_up_to_the_cut(self):
         whole = (self.place / "drive.pcapng").read_bytes()
         (self.place / "cut.pcapng").write_bytes(cut_in_a_block(whole, 2 / 3))

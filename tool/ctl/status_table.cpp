@@ -30,7 +30,11 @@ std::string line(const char* name, const char* format, const Values&... values) 
   return std::string(head) + text + "\n";
 }
 
+/// Nothing that only a scan tells is known before the first one.
+bool has_pose(const Json& s) { return s.contains("pose") && s["pose"].is_object(); }
+
 std::string pose_line(const Json& s) {
+  if (!has_pose(s)) return line("pose", "%s", "unknown");
   const double deviation_deg = std::sqrt(number(s, "/covariance/hh_rad2")) * 57.29577951308232;
   return line("pose", "x=%.2f y=%.2f m heading=%.1f deg (deviations %.3f, %.3f m, %.1f deg)", number(s, "/pose/x_m"),
               number(s, "/pose/y_m"), number(s, "/pose/heading_deg"), std::sqrt(number(s, "/covariance/xx_m2")),
@@ -38,6 +42,7 @@ std::string pose_line(const Json& s) {
 }
 
 std::string belief_lines(const Json& s) {
+  if (!s.contains("belief") || !s["belief"].is_object()) return line("belief", "%s", "none");
   std::string text = line("belief", "pose %s (right %.2f), map wrong here %.2f", word(s, "/belief/verdict").c_str(),
                           number(s, "/belief/pose_right"), number(s, "/belief/map_wrong"));
   text += line("", "beams that fit: %.0f of %.0f on what is stable, %.0f of %.0f elsewhere",
@@ -50,8 +55,10 @@ std::string belief_lines(const Json& s) {
 }
 
 std::string map_line(const Json& s) {
-  return line("map", "revision %.0f (newest %.0f), %.0f refused, mapping %s, phase %.0f%s", number(s, "/revision"),
-              number(s, "/newest_revision"), number(s, "/refused"), word(s, "/mapping").c_str(),
+  const double newest = number(s, "/newest_revision");
+  const bool is_used = s.contains("revision") && s["revision"].is_number();
+  return line("map", "revision %.0f (newest %.0f), %.0f refused, mapping %s, phase %.0f%s",
+              is_used ? number(s, "/revision") : newest, newest, number(s, "/refused"), word(s, "/mapping").c_str(),
               number(s, "/phase/number"), s.value("/phase/open"_json_pointer, false) ? " open" : "");
 }
 
@@ -76,8 +83,14 @@ std::string scans_line(const Json& s) {
   if (s.contains("drops") && s["drops"].is_object()) {
     for (const auto& count : s["drops"]) drops += count.is_number() ? count.get<double>() : 0.0;
   }
-  return line("scans", "%.0f, %.0f localized, %.0f messages dropped, latency %.1f ms", number(s, "/scans"),
-              number(s, "/localized"), drops, number(s, "/latency_ms"));
+  std::string latency = "unknown";
+  if (s.contains("latency_ms") && s["latency_ms"].is_number()) {
+    char text[32];
+    (void)std::snprintf(text, sizeof text, "%.1f ms", s["latency_ms"].get<double>());
+    latency = text;
+  }
+  return line("scans", "%.0f, %.0f localized, %.0f messages dropped, latency %s", number(s, "/scans"),
+              number(s, "/localized"), drops, latency.c_str());
 }
 
 /// What driving has told of the wheels and of the laser's mount, with deviations.
@@ -120,6 +133,7 @@ std::string outputs_lines(const Json& s) {
 }
 
 std::string filter_line(const Json& s) {
+  if (!s.contains("particles") || !s["particles"].is_number()) return line("filter", "%s", "no scan yet");
   const bool is_told = s.contains("/fit"_json_pointer) && s["fit"].is_number();
   if (!is_told) {
     return line("filter", "%.0f particles, n_eff %.0f; no beam tells how well the scan fits", number(s, "/particles"),
@@ -129,12 +143,27 @@ std::string filter_line(const Json& s) {
               number(s, "/n_eff"), number(s, "/w_avg"), 100.0 * number(s, "/fit"));
 }
 
+/// Each with why it does not answer.
+std::string ports_lines(const Json& s) {
+  char battery[32] = "";
+  if (number(s, "/battery_v") > 0.0) (void)std::snprintf(battery, sizeof battery, " (%.1f V)", number(s, "/battery_v"));
+  std::string text =
+      line("ports", "robot %s%s, laser %s", word(s, "/ports/robot").c_str(), battery, word(s, "/ports/laser").c_str());
+  if (!s.contains("port_troubles") || !s["port_troubles"].is_object()) return text;
+  for (const auto& [port, why] : s["port_troubles"].items()) {
+    if (why.is_string() && !why.get<std::string>().empty())
+      text += std::string(13, ' ') + port + ": " + why.get<std::string>() + "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string status_table(const std::string& reply_line) {
   const Json reply = Json::parse(reply_line, nullptr, false);
   const Json s = reply.is_object() ? reply : Json::object();
-  std::string text = line("state", "%s", word(s, "/state").c_str());
+  const bool is_past = has_pose(s) && word(s, "/ports/laser") == "down";
+  std::string text = line("state", is_past ? "was %s: the laser is down" : "%s", word(s, "/state").c_str());
   text += pose_line(s);
   text += belief_lines(s);
   text += filter_line(s);
@@ -142,8 +171,7 @@ std::string status_table(const std::string& reply_line) {
   text += gate_line(s);
   text += scans_line(s);
   text += wheels_lines(s);
-  text += line("ports", "robot %s (%.1f V), laser %s", word(s, "/ports/robot").c_str(), number(s, "/battery_v"),
-               word(s, "/ports/laser").c_str());
+  text += ports_lines(s);
   text += line("drive", "%s (switch: %s), stopped by: %s", word(s, "/drive").c_str(), word(s, "/drive_switch").c_str(),
                word(s, "/stopped_by").c_str());
   if (s.contains("may_drive_by_pose")) {

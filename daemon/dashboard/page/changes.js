@@ -2,6 +2,7 @@
 // The list of changes of the map, newest first. Refused ones are there when a person asks for them.
 
 import { cell_text } from "./cell_text.js";
+import { explain } from "./glossary.js";
 import { has_place } from "./layers.js";
 import { clock } from "./time_text.js";
 
@@ -41,6 +42,7 @@ function item_of(change, on_pick) {
   const why = document.createElement("span");
   why.className = "why";
   why.textContent = place_of(change) + origin_of(change);
+  for (const [element, term] of [[title, "revision"], [what, "cells of a change"], [why, "acceptance index"]]) explain(element, term);
   button.append(title, what, time, why);
   button.addEventListener("click", () => on_pick(change, button));
   item.append(button);
@@ -48,15 +50,15 @@ function item_of(change, on_pick) {
 }
 
 /// Each before the first one that is not younger than it.
-export function add_changes(changes, all, on_pick) {
+/// `accepted`, `refused`: since the start, the forgotten ones too.
+export function add_changes({ changes, accepted, refused }, all, on_pick) {
   const host = by_id("changes");
   for (const change of changes) {
     const older = [...host.children].find((item) => Number(item.dataset.time ?? -Infinity) <= change.time);
     host.insertBefore(item_of(change, on_pick), older ?? null);
   }
-  const refused = all.filter((change) => !change.accepted).length;
-  by_id("changes-hint").hidden = refused < all.length;
-  by_id("changes-count").textContent = `${all.length - refused} accepted, ${refused} refused`;
+  by_id("changes-hint").hidden = all.some((change) => change.accepted);
+  by_id("changes-count").textContent = `${accepted} accepted, ${refused} refused`;
 }
 
 export function clear_changes() {

@@ -3,6 +3,7 @@
 // fits what is shown.
 
 import { dots_per_px, ink_of, once_a_frame } from "./canvas.js";
+import { explain } from "./glossary.js";
 import { clock } from "./time_text.js";
 
 const LEFT = 46, RIGHT = 6, TOP = 6, BOTTOM = 16; // px around the plot
@@ -12,16 +13,17 @@ const MOST_POINTS = 3000; // of a line; of more, every second, third, … is dra
 const DASHES = { solid: [], dashed: [5, 3], dotted: [2, 2] };
 
 const line = (column, label, ink, dash = "solid") => ({ column, label, ink, dash });
+// `is_explained_whole`: its lines have no lines of the glossary of their own. `method`: the one that decides by it; of the other it tells nothing.
 const CHARTS = [
   { title: "Belief", lines: [line("pose_right", "P(pose right)", "--blue"), line("map_wrong", "P(map wrong)", "--red", "dashed")], threshold: "pose_right", beyond: "written from" },
-  { title: "Weight", lines: [line("w_avg", "w_avg", "--sky"), line("w_fast", "w_fast", "--red", "dashed"), line("w_slow", "w_slow", "--text", "dotted")] },
-  { title: "Divergence ratio", lines: [line("r_d", "r_d", "--blue")], threshold: "r_d", beyond: "stored above" },
-  { title: "Effective samples", lines: [line("n_eff", "N_eff", "--green")] },
-  { title: "Scans a second", lines: [line("scans_per_s", "1/s", "--blue")] },
-  { title: "Latency", lines: [line("latency_ms", "ms", "--pink")] },
-  { title: "Processor, % of one", lines: [line("cpu_localization", "pose", "--blue"), line("cpu_delta", "Δ", "--red", "dashed"), line("cpu_map", "map", "--green"),
+  { title: "Weight", method: "paper", lines: [line("w_avg", "w_avg", "--sky"), line("w_fast", "w_fast", "--red", "dashed"), line("w_slow", "w_slow", "--text", "dotted")] },
+  { title: "Divergence ratio", method: "paper", lines: [line("r_d", "r_d", "--blue")], threshold: "r_d", beyond: "stored above" },
+  { title: "Effective samples", method: "paper", lines: [line("n_eff", "N_eff", "--green")] },
+  { title: "Scans a second", is_explained_whole: true, lines: [line("scans_per_s", "1/s", "--blue")] },
+  { title: "Latency", is_explained_whole: true, lines: [line("latency_ms", "ms", "--pink")] },
+  { title: "Processor, % of one", is_explained_whole: true, lines: [line("cpu_localization", "pose", "--blue"), line("cpu_delta", "Δ", "--red", "dashed"), line("cpu_map", "map", "--green"),
     line("cpu_io", "ports", "--text", "dotted"), line("cpu_recorder", "disk", "--pink", "dashed"), line("cpu_page", "page", "--orange", "dotted")] },
-  { title: "Memory", lines: [line("memory_mib", "MiB", "--blue")] },
+  { title: "Memory", is_explained_whole: true, lines: [line("memory_mib", "MiB", "--blue")] },
   { title: "Wheels go beyond their count, %", lines: [line("wheel_distance", "distance", "--blue"), line("wheel_turn", "turn", "--red", "dashed")] },
 ];
 
@@ -69,8 +71,10 @@ class Chart {
     host.append(figure);
     const title = document.createElement("b");
     title.textContent = kind.title;
-    this.values = kind.lines.map(({ ink, dash }) => {
+    explain(title);
+    this.values = kind.lines.map(({ label, ink, dash }) => {
       const value = document.createElement("span");
+      explain(value, kind.is_explained_whole ? kind.title : label);
       value.style.setProperty("--ink", `var(${ink})`);
       value.style.setProperty("--dash", dash);
       return value;
@@ -204,6 +208,7 @@ export class Charts {
     this.draw_soon = once_a_frame(() => this.draw());
     this.samples = [];
     this.thresholds = {};
+    this.method = null; // of mapping
     this.span_s = SPANS[1][1];
     this.instant = null; // the sample under the pointer
     this.until = null;   // the time that a person looks at; null: now
@@ -230,6 +235,7 @@ export class Charts {
       const button = document.createElement("button");
       button.type = "button";
       button.textContent = label;
+      explain(button, "length of the charts");
       button.setAttribute("aria-pressed", String(span_s === this.span_s));
       button.addEventListener("click", () => {
         this.span_s = span_s;
@@ -259,8 +265,8 @@ export class Charts {
     const from = Math.max(to - this.span_s, Math.min(first, to - SPANS[0][1]));
     const inside = this.samples.filter((sample) => sample.time >= from && sample.time <= to);
     const every = Math.ceil(inside.length / MOST_POINTS), shown = inside.filter((_, i) => i % every === 0);
-    if (this.samples.length) {
-      for (const chart of this.charts) chart.set_shown(this.samples.some((sample) => chart.kind.lines.some(({ column }) => Number.isFinite(sample[column]))));
+    for (const chart of this.charts) {
+      chart.set_shown((!chart.kind.method || chart.kind.method === this.method) && this.samples.some((sample) => chart.kind.lines.some(({ column }) => Number.isFinite(sample[column]))));
     }
     const instant = this.instant ?? (this.until === null ? null : inside.findLast((sample) => sample.time <= this.until) ?? inside[0]);
     for (const chart of this.charts) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Commands to the daemon, as `deltamap ctl` gives them, and what it answers.
 
+import { explain } from "./glossary.js";
+
 const PATIENCE_MS = 5000;
 
 /// {ok: true, message} with `doubt` where one should look again, or {ok: false, error} with `is_locked` where the token is
@@ -67,6 +69,7 @@ export class TaskRow {
       const button = document.createElement("button");
       button.type = "button";
       button.textContent = label;
+      explain(button, label.replace(/ M\d+$/, ""));
       button.addEventListener("click", act);
       return button;
     }));

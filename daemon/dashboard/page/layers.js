@@ -4,6 +4,7 @@
 import { beam_words, FITS, NOT_KNOWN, SHORT, THROUGH } from "./beams.js";
 import { draw_particles, draw_stored, draw_way, sign_particles, sign_stored, sign_way } from "./belief_layers.js";
 import { circle, ink_of } from "./canvas.js";
+import { explain } from "./glossary.js";
 
 const OLD_INK = "--soft";  // of what is no longer known to be so
 const JUMP_M = 2;      // the path is not joined over such a step
@@ -243,6 +244,7 @@ export function fill_delta_legend(host) {
     key.className = "key";
     const [ink, draw] = DELTA_SIGNS[state];
     key.append(sign_of((c) => { c.fillStyle = c.strokeStyle = ink_of(ink); c.lineWidth = 1.5; draw(c, 6, 2, 10); }), text);
+    explain(key, text);
     return key;
   }));
 }
@@ -309,11 +311,13 @@ export function fill_legend(host, shown, on_change) {
       on_change();
     });
     label.append(box, ...(layer.sign ? [sign_of(layer.sign)] : []), layer.label);
+    explain(label, layer.label);
     host.append(label);
     for (const [text, draw] of layer.keys ?? []) {
       const key = document.createElement("div");
       key.className = "key";
       key.append(sign_of(draw), text);
+      explain(key, text);
       host.append(key);
     }
   }
@@ -323,7 +327,7 @@ export function draw_scale_bar(context, view) {
   const most_px = Math.min(160, view.width / 3);
   const power = 10 ** Math.floor(Math.log10(most_px / view.scale));
   const length_m = [5, 2, 1].map((n) => n * power).find((m) => m * view.scale <= most_px);
-  const length_px = length_m * view.scale, x = 14, y = view.height - 14;
+  const length_px = length_m * view.scale, x = 14, y = Math.min(view.height, view.free_room().last) - 14;
   const text = length_m >= 1 ? `${length_m} m` : `${Math.round(100 * length_m)} cm`;
   context.font = "12px system-ui, sans-serif";
   context.fillStyle = ink_of("--card");

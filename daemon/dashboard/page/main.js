@@ -5,6 +5,7 @@ import { add_changes, clear_changes, mark_picked } from "./changes.js";
 import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
 import { Control } from "./control.js";
+import { explain } from "./glossary.js";
 import { History } from "./history.js";
 import { draw_delta, draw_scale_bar, draw_wish, fill_delta_legend, fill_legend, has_place, LAYERS } from "./layers.js";
 import { MapView } from "./map_view.js";
@@ -12,7 +13,7 @@ import { show_link, show_pose, show_run, show_status } from "./panels.js";
 import { Run } from "./run.js";
 
 const MOST_SAMPLES = 3600;
-const NARROW_PX = 1280; // the legend would cover the map
+const NARROW_PX = 1400; // the legend would take a third of the map
 const OLD_MS = 2000;    // a pose that has come so long ago is no longer shown as the present one
 
 const by_id = (id) => document.getElementById(id);
@@ -32,11 +33,14 @@ function is_drawn(layer) {
   return shown.has(layer.id) && !(is_past && layer.is_of_now) && !(model.is_old && layer.is_gone_when_old);
 }
 
-/// What lies over the map: tools above, questions below, and the pad where it is no mere corner.
+/// What lies over the map: tools above, questions below, the pad where it is no mere corner, the open layers' box at the right. On a
+/// phone all of them stand around it.
 function covered() {
-  const [map, tools, foot, pad] = ["map", "map-tools", "map-foot", "pad"].map((id) => by_id(id).getBoundingClientRect());
+  const [map, tools, foot, pad, layers] = ["map", "map-tools", "map-foot", "pad", "layers-box"].map((id) => by_id(id).getBoundingClientRect());
   const below = [foot, ...(pad.width > map.width / 2 ? [pad] : [])].filter((box) => box.height);
-  return { top: tools.bottom - map.top, bottom: Math.max(0, ...below.map((box) => map.bottom - box.top)) };
+  const is_beside = by_id("layers-box").open && layers.width && layers.top < map.bottom;
+  return { top: Math.max(0, tools.bottom - map.top), bottom: Math.max(0, ...below.map((box) => map.bottom - box.top)),
+           right: is_beside ? Math.max(0, map.right - layers.left) : 0 };
 }
 
 const view = new MapView(by_id("map"), (context) => {
@@ -46,7 +50,7 @@ const view = new MapView(by_id("map"), (context) => {
   draw_scale_bar(context, view);
 }, covered);
 const cover = new ResizeObserver(() => view.take_cover());
-for (const id of ["map-tools", "map-foot", "pad"]) cover.observe(by_id(id));
+for (const id of ["map-tools", "map-foot", "pad", "layers-box"]) cover.observe(by_id(id));
 const charts = new Charts(by_id("charts"), by_id("spans"), by_id("charts-instant"));
 
 function take_theme() {
@@ -62,6 +66,10 @@ by_id("theme").addEventListener("click", () => {
 });
 system_dark.addEventListener("change", take_theme);
 take_theme();
+
+// --- what the words mean ---
+
+for (const one of document.querySelectorAll("h2, summary, header button, #map-section button, [data-term]")) explain(one);
 
 // --- the map's tools ---
 
@@ -88,7 +96,7 @@ function pick(change, button) {
   }
   view.set_follow(false);
   const [left, bottom, right, top] = change.box_m;
-  view.scale = Math.max(view.scale, Math.min(40, 0.4 * Math.min(view.width, view.free_rows().high) / Math.max(1, right - left, top - bottom)));
+  view.scale = Math.max(view.scale, Math.min(40, 0.4 * Math.min(view.free_room().wide, view.free_room().high) / Math.max(1, right - left, top - bottom)));
   view.show((left + right) / 2, (bottom + top) / 2);
 }
 
@@ -98,6 +106,13 @@ const run = new Run(view, model, (message) => connection.take(message), (time) =
   charts.until = time;
   charts.draw_soon();
 });
+/// One slider for time and revision: with a revision in view, the newest one of that time.
+run.on_walk = (time) => {
+  if (!history.is_open) return;
+  const before = model.changes.filter((change) => change.accepted && change.time <= time).map((change) => change.revision);
+  const number = Math.max(history.oldest, ...before);
+  if (number !== history.number) history.show(number);
+};
 charts.on_pick = (time) => { if (run.is_open) run.go(time); };
 
 // --- what the daemon sends ---
@@ -115,6 +130,7 @@ function look_at_age() {
   if (is_old === model.is_old) return;
   model.is_old = is_old;
   show_pose(model.pose, is_old);
+  if (model.status_message) show_status(model.status_message, null, is_old);
   view.draw_soon();
 }
 setInterval(look_at_age, 500);
@@ -132,6 +148,7 @@ const on = {
     charts.set_whole(Boolean(hello.run));
     document.title = hello.run ? `${hello.run.name} – deltamap` : `deltamap ${hello.version.split(" ")[0]}`;
     charts.thresholds = hello.thresholds;
+    charts.method = hello.method;
     charts.instant = null;
     control.allow(hello.control);
     history.allow_undo(Boolean(hello.control));
@@ -169,7 +186,8 @@ const on = {
     model.status = now;
     control.show(now);
     history.update();
-    show_status(message, passed_s > 0 ? (now.localized - before.localized) / passed_s : null);
+    model.status_message = message;
+    show_status(message, passed_s > 0 ? (now.localized - before.localized) / passed_s : null, model.is_old);
   },
   run(told) {
     run.show(told);
@@ -182,9 +200,9 @@ const on = {
     charts.samples = model.samples;
     charts.draw_soon();
   },
-  changes({ changes }) {
-    model.changes.push(...changes);
-    add_changes(changes, model.changes, pick);
+  changes(message) {
+    model.changes.push(...message.changes);
+    add_changes(message, model.changes, pick);
     view.draw_soon();
   },
 };

@@ -15,8 +15,8 @@ function rgb(name) {
 }
 
 export class MapView {
-  /// `covered`: {top, bottom}, the pixels of the canvas that lie under something else.
-  constructor(canvas, draw_over, covered = () => ({ top: 0, bottom: 0 })) {
+  /// `covered`: {top, bottom, right}, the pixels of the canvas that lie under something else.
+  constructor(canvas, draw_over, covered = () => ({ top: 0, bottom: 0, right: 0 })) {
     this.covered = covered;
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
@@ -163,19 +163,19 @@ export class MapView {
     return { x: this.centre.x + (px - this.width / 2) / this.scale, y: this.centre.y - (py - this.height / 2) / this.scale };
   }
 
-  /// The rows of the canvas that can be seen.
-  free_rows() {
-    const { top, bottom } = this.covered();
+  /// The part of the canvas that can be seen: rows from first to last, columns from 0 to wide.
+  free_room() {
+    const { top, bottom, right } = this.covered();
     const last = Math.max(this.height - bottom, Math.min(this.height, top + LEAST_FREE_PX));
     const first = Math.max(0, Math.min(top, last - LEAST_FREE_PX));
-    return { first, last, high: last - first, middle: (first + last) / 2 };
+    return { first, last, high: last - first, middle: (first + last) / 2, wide: Math.max(this.width - right, Math.min(this.width, LEAST_FREE_PX)) };
   }
 
   fit() {
     if (!this.known || !this.frame || !this.width) return;
-    const { resolution_m: m, origin_m: [x, y] } = this.frame, rows = this.free_rows();
+    const { resolution_m: m, origin_m: [x, y] } = this.frame, room = this.free_room();
     const wide = (this.known.high_x - this.known.low_x) * m, high = (this.known.high_y - this.known.low_y) * m;
-    this.scale = Math.min(MOST_SCALE, 0.96 * Math.min(this.width / wide, rows.high / high));
+    this.scale = Math.min(MOST_SCALE, 0.96 * Math.min(room.wide / wide, room.high / high));
     this.put_in_middle({ x: x + (this.known.low_x + this.known.high_x) * m / 2, y: y + (this.known.low_y + this.known.high_y) * m / 2 });
     this.is_fitted = true;
     this.aim = null;
@@ -184,7 +184,8 @@ export class MapView {
   }
 
   put_in_middle({ x, y }) {
-    this.centre = { x, y: y + (this.free_rows().middle - this.height / 2) / this.scale };
+    const { middle, wide } = this.free_room();
+    this.centre = { x: x + (this.width - wide) / 2 / this.scale, y: y + (middle - this.height / 2) / this.scale };
   }
 
   move_by(dx_px, dy_px) {
@@ -218,9 +219,9 @@ export class MapView {
 
   /// Moves the map as little as it takes until the place can be seen.
   reveal(x, y) {
-    const [px, py] = this.to_screen(x, y), rows = this.free_rows();
+    const [px, py] = this.to_screen(x, y), room = this.free_room();
     const into = (at, low, high) => Math.min(Math.max(at, low), high) - at;
-    const right = into(px, EDGE_PX, this.width - EDGE_PX), down = into(py, rows.first + EDGE_PX, rows.last - EDGE_PX);
+    const right = into(px, EDGE_PX, room.wide - EDGE_PX), down = into(py, room.first + EDGE_PX, room.last - EDGE_PX);
     if (right || down) this.move_by(right, down);
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The status and the badges.
 
+import { explain } from "./glossary.js";
 import { clock, date_and_clock } from "./time_text.js";
 
 const GATE_WORDS = {
@@ -9,8 +10,14 @@ const GATE_WORDS = {
   confirming: "the pose has to hold for a while first", doubtful: "P(pose right) is low",
   rival: "another place fits as well",
   spread: "the pose is too uncertain, or nothing in view holds it",
+  "no scans": "no scans come", off: "mapping is off", paused: "mapping is paused",
 };
-const LEVELS = { tracking: "good", global: "warn", lost: "bad", right: "good", undecided: "warn", wrong: "bad" };
+const IS_NO_GATE = { "no scans": "no scans", off: "mapping off", paused: "mapping paused" };  // nothing votes at all
+// Amber calls for a look: what is normal for minutes is calm.
+const LEVELS = { tracking: "good", global: "warn", lost: "bad", right: "good", undecided: "calm", wrong: "bad" };
+const GATE_LEVELS = { lost: "warn", wrong: "warn", disbelieved: "warn" };  // any other reason is calm
+
+const UNKNOWN = "–";
 
 const percent = (share) => `${(100 * share).toFixed(share > 0 && share < 0.01 ? 1 : 0)} %`;
 const whole = (number) => Math.round(number).toLocaleString("en");
@@ -22,11 +29,12 @@ function duration(time_s) {
   return `${Math.floor(s / 3600)} h ${Math.floor((s % 3600) / 60)} min`;
 }
 
-function badge(id, text, level, title = "") {
+/// `term`: of the glossary.
+function badge(id, text, level, term, detail = "") {
   const host = document.getElementById(id);
   if (host.textContent !== text) host.textContent = text;
   host.dataset.level = level;
-  host.title = title;
+  explain(host, term, detail);
 }
 
 const KINDS = { recording: "recording", folder: "finished run", map: "map" };
@@ -34,23 +42,24 @@ const KINDS = { recording: "recording", folder: "finished run", map: "map" };
 /// `run`: of hello, or null.
 export function show_link(link, run) {
   const words = { connecting: "connecting", live: run ? KINDS[run.kind] : "live", lost: "no connection" };
-  badge("badge-link", words[link], { connecting: "wait", live: "good", lost: "bad" }[link]);
+  badge("badge-link", words[link], { connecting: "wait", live: "good", lost: "bad" }[link], words[link]);
   document.body.dataset.link = link;
 }
 
 /// `is_old`: no newer pose has come for a while.
 export function show_pose(pose, is_old) {
-  const since = `no pose since ${clock(pose.time)}`;
-  if (is_old) {
-    badge("badge-state", `was ${pose.state}`, "none", since);
-    badge("badge-verdict", `pose was ${pose.verdict}`, "none", since);
-    return badge("badge-gate", "–", "none", since);
-  }
-  badge("badge-state", pose.state, LEVELS[pose.state] ?? "none");
-  badge("badge-verdict", `pose ${pose.verdict}`, LEVELS[pose.verdict] ?? "none");
-  if (!pose.gate) return badge("badge-gate", "–", "none");
-  if (pose.gate.open) return badge("badge-gate", "gate open", "good", "the map may be written");
-  badge("badge-gate", `gate closed: ${pose.gate.reason}`, "warn", `the map is not written: ${GATE_WORDS[pose.gate.reason] ?? pose.gate.reason}`);
+  const since = is_old ? `No pose since ${clock(pose.time)}.` : "";
+  badge("badge-state", is_old ? `was ${pose.state}` : pose.state, is_old ? "none" : LEVELS[pose.state] ?? "none", pose.state, since);
+  badge("badge-verdict", is_old ? `pose was ${pose.verdict}` : `pose ${pose.verdict}`, is_old ? "none" : LEVELS[pose.verdict] ?? "none", pose.verdict, since);
+  if (is_old || pose.gate) show_gate(is_old ? { reason: "no scans" } : pose.gate);
+}
+
+/// `gate`: of a pose or of the status.
+function show_gate({ open, reason }) {
+  if (open) return badge("badge-gate", "gate open", "good", "write gate", "The map may be written.");
+  const why = `The map is not written: ${GATE_WORDS[reason] ?? reason}.`;
+  if (IS_NO_GATE[reason]) return badge("badge-gate", IS_NO_GATE[reason], "none", "write gate", why);
+  badge("badge-gate", `gate closed: ${reason}`, GATE_LEVELS[reason] ?? "calm", "write gate", why);
 }
 
 function share_bar(share) {
@@ -63,14 +72,40 @@ function share_bar(share) {
 }
 
 function waiting_words(status) {
+  if (!status.pose || status.mapping !== "on") return UNKNOWN;
   const blocks = status.temporary.standing_blocks + status.temporary.gone_blocks;
   const differs = blocks ? `${whole(blocks)} blocks differ` : "nothing differs";
   return status.phase.open ? `${differs}; Δ-phase ${status.phase.number}, ${status.phase.stored_scans} scans` : differs;
 }
 
-function gate_words(status) {
-  if (status.mapping !== "on") return `mapping is ${status.mapping}`;
-  return status.gate.open ? "open" : `closed: ${GATE_WORDS[status.gate.reason] ?? status.gate.reason}`;
+const gate_words = ({ gate: { open, reason } }) => (open ? "open" : `closed: ${GATE_WORDS[reason] ?? reason}`);
+
+/// "robot up, laser down: no such device": `port_troubles` tells why.
+function port_words({ ports, port_troubles = {} }) {
+  const why = (name) => (ports[name] === "down" && port_troubles[name] ? `: ${port_troubles[name]}` : "");
+  return Object.keys(ports).map((name) => `${name} ${ports[name]}${why(name)}`).join("; ");
+}
+
+/// What is true of a pose that is no longer the present one is its place alone.
+function pose_rows({ pose, belief, covariance, fit }, is_old) {
+  const of_now = (value) => (pose && !is_old ? value() : UNKNOWN);
+  const place = () => `${pose.x_m.toFixed(2)}, ${pose.y_m.toFixed(2)} m, ${pose.heading_deg.toFixed(0)}°`;
+  const deviation = () => `; σ ${(100 * Math.sqrt(Math.max(covariance.xx_m2, covariance.yy_m2))).toFixed(1)} cm`;
+  return {
+    belief: [
+      ["P(pose right)", of_now(() => share_bar(belief.pose_right))],
+      ["P(map wrong)", of_now(() => share_bar(belief.map_wrong))],
+      ["Scan fits", of_now(() => (fit === null ? UNKNOWN : share_bar(fit)))],
+    ],
+    place: ["Pose", !pose ? UNKNOWN : is_old ? `was ${place()}` : place() + deviation()],
+  };
+}
+
+const scan_words = (rate, drops) => (rate === null ? UNKNOWN : rate > 0 ? `${rate.toFixed(1)} a second` : "none come") + (drops ? `; ${whole(drops)} dropped` : "");
+
+function revision_words({ newest_revision, revision, refused }) {
+  const other = revision === null || revision === newest_revision ? "" : `, pose on M${revision}`;
+  return `M${newest_revision}${other}` + (refused ? `; ${refused} refused` : "");
 }
 
 /// Who drives and why it stands, and what planners are told of the pose.
@@ -82,39 +117,36 @@ export function driving_rows({ drive, stopped_by, never_driven, may_drive_by_pos
   ];
 }
 
-function rows_of({ status, resident_bytes }, rate) {
-  const { pose, belief, covariance } = status;
-  const deviation = Math.sqrt(Math.max(covariance.xx_m2, covariance.yy_m2));
+function rows_of({ status, resident_bytes }, rate, is_old) {
+  const rows = pose_rows(status, is_old), is_now = status.pose && !is_old;
   const drops = Object.values(status.drops).reduce((sum, count) => sum + count, 0);
   return [
-    ["P(pose right)", share_bar(belief.pose_right)],
-    ["P(map wrong)", share_bar(belief.map_wrong)],
-    ["Scan fits", status.fit === null ? "–" : share_bar(status.fit)],
+    ...rows.belief,
     ["Write gate", gate_words(status)],
     ["Waits", waiting_words(status)],
-    ["Revision", `M${status.newest_revision}` + (status.newest_revision === status.revision ? "" : `, pose on M${status.revision}`) + (status.refused ? `; ${status.refused} refused` : "")],
-    ["Pose", `${pose.x_m.toFixed(2)}, ${pose.y_m.toFixed(2)} m, ${pose.heading_deg.toFixed(0)}°; σ ${(100 * deviation).toFixed(1)} cm`],
-    ["Scans", (rate === null ? "–" : rate > 0 ? `${rate.toFixed(1)} a second` : "none come") + (drops ? `; ${whole(drops)} dropped` : "")],
-    ["Latency", `${status.latency_ms.toFixed(1)} ms`],
-    ["Particles", `${whole(status.particles)}; N_eff ${status.n_eff.toFixed(0)}`],
-    ["Ports", `robot ${status.ports.robot}, laser ${status.ports.laser}`],
+    ["Revision", revision_words(status)],
+    rows.place,
+    ["Scans", scan_words(rate, drops)],
+    ["Latency", is_now ? `${status.latency_ms.toFixed(1)} ms` : UNKNOWN],
+    ["Particles", is_now ? `${whole(status.particles)}; N_eff ${status.n_eff.toFixed(0)}` : UNKNOWN],
+    ["Ports", port_words(status)],
     ...driving_rows(status),
-    ["Battery", status.battery_v > 0 ? `${status.battery_v.toFixed(1)} V` : "–"],
-    ["Memory", `${(resident_bytes / 1048576).toFixed(1)} MiB`],
+    ["Battery", status.battery_v === null ? UNKNOWN : `${status.battery_v.toFixed(1)} V`],
+    ["Memory", resident_bytes ? `${(resident_bytes / 1048576).toFixed(1)} MiB` : UNKNOWN],
     ["Runs for", duration(status.since_start_s)],
   ];
 }
 
 function problems_of(status) {
   const problems = Object.entries(status.outputs).filter(([, output]) => !output.written).map(([name, output]) => `${name} is not written: ${output.why}`);
-  for (const [port, state] of Object.entries(status.ports)) if (state === "down") problems.push(`${port} does not answer`);
+  for (const [port, state] of Object.entries(status.ports)) if (state === "down") problems.push(`${port} does not answer${status.port_troubles?.[port] ? `: ${status.port_troubles[port]}` : ""}`);
   return problems;
 }
 
 /// Rows of a run that is over, at the time that is shown. `pose` is null where it has no scans.
 function rows_of_run(run, told, pose, frame) {
   const rows = [["Of", run.name]];
-  if (frame) rows.push(["Map", `M${told.revision}; ${whole(frame.width)} × ${whole(frame.height)} cells of ${+(100 * frame.resolution_m).toFixed(1)} cm`]);
+  if (frame) rows.push(["Revision", `M${told.revision}; ${whole(frame.width)} × ${whole(frame.height)} cells of ${+(100 * frame.resolution_m).toFixed(1)} cm`]);
   if (told.from === null || !pose) return rows;
   const deviation = Math.sqrt(Math.max(pose.covariance.xx_m2, pose.covariance.yy_m2));
   return [...rows,
@@ -130,8 +162,10 @@ function rows_of_run(run, told, pose, frame) {
 
 export function show_run(run, told, pose, frame) { show_rows(rows_of_run(run, told, pose, frame)); }
 
-export function show_status(message, rate) {
-  show_rows(rows_of(message, rate));
+/// `is_old`: no newer pose has come for a while.
+export function show_status(message, rate, is_old) {
+  show_rows(rows_of(message, rate, is_old));
+  show_gate(is_old ? { reason: "no scans" } : message.status.gate);
   const problems = problems_of(message.status), alert = document.getElementById("problems");
   alert.hidden = !problems.length;
   if (alert.textContent !== problems.join("; ")) alert.textContent = problems.join("; ");
@@ -145,6 +179,7 @@ function show_rows(rows) {
     host.replaceChildren(...rows.flatMap(([name]) => {
       const title = document.createElement("dt");
       title.textContent = name;
+      explain(title);
       return [title, document.createElement("dd")];
     }));
   }

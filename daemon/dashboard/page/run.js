@@ -33,9 +33,10 @@ export class Run {
     this.is_busy = false;
     this.follows_end = true;  // until a person says otherwise
     this.maps = new Map();
+    this.on_walk = () => {};
     this.slider = by_id("run-slider");
     this.slider.step = STEP_S;
-    this.slider.addEventListener("input", () => this.go(this.told.from + Number(this.slider.value)));
+    this.slider.addEventListener("input", () => this.walk(this.told.from + Number(this.slider.value)));
     by_id("run-play").addEventListener("click", () => this.play(!this.timer));
   }
 
@@ -63,6 +64,12 @@ export class Run {
     if (!has_scans) return;
     this.slider.max = (Math.ceil((told.to - told.from) / STEP_S) * STEP_S).toFixed(1);
     if (this.follows_end) this.aim(told.to); else this.tell();
+  }
+
+  /// By slider or by playing: a revision that is looked at goes along.
+  walk(time) {
+    this.go(time);
+    this.on_walk(this.wanted);
   }
 
   /// A person's wish.
@@ -133,6 +140,6 @@ export class Run {
   advance() {
     if (this.is_busy) return;
     if (this.wanted >= this.told.to) return this.play(false);
-    this.go(this.wanted + FRAME_S * Number(by_id("run-speed").value));
+    this.walk(this.wanted + FRAME_S * Number(by_id("run-speed").value));
   }
 }

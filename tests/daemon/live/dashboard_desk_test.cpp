@@ -166,6 +166,12 @@ TEST_F(DashboardDeskTest, TheHistoryListsWhatThisRunHasChanged) {
 TEST_F(DashboardDeskTest, MetricsFollowThePrometheusTextFormat) {
   telemetry_.scans.set(7);
   start();
+  for (const char* unknown : {"pose_x_meters", "latency_seconds", "battery_volts"}) {
+    EXPECT_EQ(got("/metrics").body.find(unknown), std::string::npos) << unknown;
+  }
+  telemetry_.localized.set(7);
+  telemetry_.robot_up.set(true);
+  telemetry_.battery_v.set(12.5);
   const WebAnswer answer = got("/metrics");
   EXPECT_EQ(answer.headers.at("Content-Type"), "text/plain; version=0.0.4; charset=utf-8");
   const std::regex comment{R"re(# (HELP deltamap_[a-z_]+ [^\n]+|TYPE deltamap_[a-z_]+ (counter|gauge)))re"};
@@ -188,10 +194,12 @@ TEST_F(DashboardDeskTest, MetricsFollowThePrometheusTextFormat) {
     }
   }
   EXPECT_NE(answer.body.find("\ndeltamap_scans_total 7\n"), std::string::npos);
+  EXPECT_NE(answer.body.find("\ndeltamap_battery_volts 12.5\n"), std::string::npos);
   EXPECT_GT(seen.size(), 30u);
 }
 
 TEST_F(DashboardDeskTest, AViewerSeesPoseScanMapAndWhatChangesInIt) {
+  telemetry_.gate.set(mapping::gate::GateReason::kOpen, {});
   start();
   show_scan();
   WebClient viewer{port()};

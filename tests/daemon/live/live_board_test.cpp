@@ -159,15 +159,23 @@ TEST_F(LiveBoardTest, StoredScansAreThinnedToTwentyKilobytes) {
   EXPECT_EQ(two.size(), next + 24);
 }
 
+TEST(PoseMessage, TellsOfNoOpenGateBeforeTheFirstScanVotesNorWithMappingOff) {
+  Telemetry telemetry;
+  EXPECT_EQ(pose_message({}, telemetry, true).find(R"("open":true)"), std::string::npos);
+  telemetry.gate.set(mapping::gate::GateReason::kOpen, {});
+  EXPECT_NE(pose_message({}, telemetry, true).find(R"("open":true)"), std::string::npos);
+  EXPECT_NE(pose_message({}, telemetry, false).find(R"("gate":null)"), std::string::npos);
+}
+
 TEST_F(LiveBoardTest, ThePilotsWishIsToldWhileItDrives) {
   Telemetry telemetry;
   telemetry.wanted_speed_m_per_s.set(0.5);
-  EXPECT_EQ(pose_message({}, telemetry).find("pilot"), std::string::npos);
+  EXPECT_EQ(pose_message({}, telemetry, true).find("pilot"), std::string::npos);
   telemetry.drives.set(true);
-  EXPECT_NE(pose_message({}, telemetry).find(R"("pilot":{"speed_m_per_s":0.5,"turn_rate_rad_per_s":0.0})"),
+  EXPECT_NE(pose_message({}, telemetry, true).find(R"("pilot":{"speed_m_per_s":0.5,"turn_rate_rad_per_s":0.0})"),
             std::string::npos);
   telemetry.by_hand.set(true);
-  EXPECT_EQ(pose_message({}, telemetry).find("pilot"), std::string::npos);
+  EXPECT_EQ(pose_message({}, telemetry, true).find("pilot"), std::string::npos);
 }
 
 TEST_F(LiveBoardTest, WhatForbidsToDriveByThePoseIsTold) {
@@ -175,7 +183,7 @@ TEST_F(LiveBoardTest, WhatForbidsToDriveByThePoseIsTold) {
   Telemetry telemetry;
   const auto forbids = [&](StopReason reason) {
     const std::string told = "\"forbidden_by\":\"" + std::string(name_of(reason)) + "\"";
-    return pose_message({}, telemetry).find(told) != std::string::npos;
+    return pose_message({}, telemetry, true).find(told) != std::string::npos;
   };
   EXPECT_TRUE(forbids(StopReason::kPoseUnknown)) << "no scan has been localized";
   telemetry.localized.set(1);
@@ -298,6 +306,16 @@ TEST_F(LiveBoardTest, ARefusedChangeIsListedAndChangesNoCell) {
   const auto changes = board_.changes_from(0, 10);
   ASSERT_EQ(changes.items.size(), 1u);
   EXPECT_EQ(changes.items[0].reason, "too little");
+}
+
+TEST_F(LiveBoardTest, ChangesAreCountedBeyondTheOnesThatAreKept) {
+  ChangeNote refused;
+  refused.reason = "too little";
+  for (std::size_t i = 0; i < LiveBoard::kChangesKept + 7; ++i) board_.show(nullptr, refused);
+  show_change({1, 1});
+  EXPECT_EQ(board_.changes_from(0, 10'000).items.size(), LiveBoard::kChangesKept);
+  EXPECT_EQ(board_.change_counts().refused, LiveBoard::kChangesKept + 7);
+  EXPECT_EQ(board_.change_counts().accepted, 1U);
 }
 
 TEST_F(LiveBoardTest, OlderPosesAreSkippedForASlowViewer) {

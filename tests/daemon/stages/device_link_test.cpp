@@ -78,6 +78,7 @@ class DeviceLinkTest : public testing::Test {
   std::vector<std::string> log_;
   std::vector<std::string> warnings_;
   int lost_ = 0;
+  std::string why_lost_;
   port::PortHandlers device_;
   std::vector<std::uint8_t> written_;
   boost::asio::io_context loop_;
@@ -86,7 +87,12 @@ class DeviceLinkTest : public testing::Test {
       port::PortId::kRobot,
       FakeSession{},
       {[this](boost::asio::io_context&, port::PortId, unsigned) { return opened(); }, [](port::ByteRecord&&) {},
-       [](FakeOutput&) {}, [this] { ++lost_; }, [this](const std::string& line) { log_.push_back(line); },
+       [](FakeOutput&) {},
+       [this](const std::string& why) {
+         ++lost_;
+         why_lost_ = why;
+       },
+       [this](const std::string& line) { log_.push_back(line); },
        [this](const std::string& line) { warnings_.push_back(line); },
        [this](const std::string& name) { answered_.push_back(name); }}};
 };
@@ -104,6 +110,7 @@ TEST_F(DeviceLinkTest, TellsThatTheDeviceIsLostWhenItCannotBeOpened) {
   refused_ = "/dev/robot is missing";
   link_.open();
   EXPECT_EQ(lost_, 1);
+  EXPECT_EQ(why_lost_, "/dev/robot is missing");
   EXPECT_EQ(warnings_, std::vector<std::string>{"robot: /dev/robot is missing; trying again"});
 }
 

@@ -50,5 +50,20 @@ TEST(StatusTable, SaysWhyPlannersMustNotDrive) {
               "planners     must not drive by this pose: laser sees nothing");
 }
 
+TEST(StatusTable, SaysWhatNobodyKnows) {
+  const std::string nothing =
+      R"({"state":"no scan yet","pose":null,"covariance":null,"belief":null,"particles":null,"n_eff":null,)"
+      R"("latency_ms":null,"battery_v":null,"ports":{"robot":"down","laser":"down"},)"
+      R"("port_troubles":{"robot":"/dev/ttyUSB0: busy","laser":""}})";
+  expect_line(nothing, "pose         unknown");
+  expect_line(nothing, "belief       none");
+  expect_line(nothing, "filter       no scan yet");
+  expect_line(nothing, "scans        0, 0 localized, 0 messages dropped, latency unknown");
+  expect_line(nothing, "ports        robot down, laser down\n             robot: /dev/ttyUSB0: busy");
+  EXPECT_EQ(status_table(nothing).find("0.00"), std::string::npos);
+  expect_line(R"({"state":"tracking","pose":{"x_m":1},"ports":{"laser":"down"}})",
+              "state        was tracking: the laser is down");
+}
+
 }  // namespace
 }  // namespace deltamap::tool
