@@ -26,6 +26,12 @@ std::string words_of(const MapOrder& order, const MapRevision& made, const mappi
   return wanted.kept == 0 ? text : text + ", " + std::to_string(wanted.kept) + " have changed since and stay";
 }
 
+/// " added=12 freed=3 forgotten=0"
+std::string cells_in(const ChangeNote& note) {
+  return " added=" + std::to_string(note.added) + " freed=" + std::to_string(note.freed) +
+         " forgotten=" + std::to_string(note.forgotten);
+}
+
 /// " scans=120 acceptance=0.973"
 std::string evidence_of(const ChangeNote& note) {
   char acceptance[16];
@@ -84,8 +90,7 @@ void MapStage::tell_and_hand_on(const MapStep::Result& result) {
     wiring_.log("pose proved wrong: withdrawn=" + std::to_string(result.note.withdraws.size()) + " revisions");
   }
   wiring_.log("map changed: revision=" + std::to_string(result.revision->number) +
-              " phase=" + std::to_string(result.note.phase) + " added=" + std::to_string(result.note.added) +
-              " freed=" + std::to_string(result.note.freed) + evidence_of(result.note) +
+              " phase=" + std::to_string(result.note.phase) + cells_in(result.note) + evidence_of(result.note) +
               " verdict=" + (result.note.withdraws.empty() ? "accepted" : "withdrawn"));
   hand_on(result);
 }
@@ -102,8 +107,7 @@ void MapStage::obey(const MapOrder& order) {
   const MapStep::Result result = step_.obey(set);
   if (!result.revision) return wiring_.answer({order.ticket, false, "not done: " + result.note.reason});
   note(set);
-  wiring_.log("map changed: revision=" + std::to_string(result.revision->number) +
-              " added=" + std::to_string(result.note.added) + " freed=" + std::to_string(result.note.freed) +
+  wiring_.log("map changed: revision=" + std::to_string(result.revision->number) + cells_in(result.note) +
               " reason=" + result.note.reason);
   hand_on(result);
   const std::string behind = outputs_.why_behind();
