@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "daemon/system/system_journal.hpp"
+#include "daemon/system/terminal_width.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -69,7 +70,7 @@ void Console::show(const std::string& status) {
   const std::scoped_lock lock{mutex_};
   for (const LeveledLine& line : throttle_.due(LogThrottle::Clock::now())) write(line);
   if (on_terminal_) {
-    if (is_read()) std::cerr << "\r\033[K" << status << std::flush;
+    if (is_read()) std::cerr << "\r\033[K" << fitted_to_terminal(status, STDERR_FILENO) << std::flush;
   } else {
     write({seconds_++ % kQuietLogPeriod_s == 0 ? LogLevel::kInfo : LogLevel::kDebug, status});
   }

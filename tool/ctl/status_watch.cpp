@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tool/ctl/status_watch.hpp"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <string>
 
 #include "daemon/control/request.hpp"
+#include "daemon/system/terminal_width.hpp"
 #include "tool/ctl/daemon_reply.hpp"
 
 namespace deltamap::tool {
@@ -102,16 +102,10 @@ class StatusWatch {
 
   void show(const std::string& line) {
     if (options_.on_terminal && !options_.as_json) {
-      out_ << "\r\033[K" << line.substr(0, columns());
+      out_ << "\r\033[K" << daemon::fitted_to_terminal(line, STDOUT_FILENO);
     } else {
       out_ << line << '\n';
     }
-  }
-
-  /// A line that is longer than the terminal is wide could not be written over.
-  [[nodiscard]] static std::size_t columns() {
-    winsize size{};
-    return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1u : std::string::npos;
   }
 
   const WatchOptions& options_;
