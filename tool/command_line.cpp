@@ -26,6 +26,23 @@ void tell_in_json(int argc, const char* const* argv, const std::string& error) {
   if (is_asked) std::cout << daemon::control::error_line(error) << std::endl;
 }
 
+std::vector<const CLI::App*> commands_of(const CLI::App& parent) {
+  return parent.get_subcommands([](const CLI::App*) { return true; });
+}
+
+/// Of the commands here, else of those one level below: "ctl status" for "stauts".
+std::optional<std::string> nearest_command(const CLI::App& parent, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* one : commands_of(parent)) names.push_back(one->get_name());
+  if (const auto nearest = daemon::nearest_of(names, word)) return nearest;
+  for (const CLI::App* one : commands_of(parent)) {
+    std::vector<std::string> below;
+    for (const CLI::App* inner : commands_of(*one)) below.push_back(inner->get_name());
+    if (const auto nearest = daemon::nearest_of(below, word)) return one->get_name() + " " + *nearest;
+  }
+  return std::nullopt;
+}
+
 /// "ctl: unknown command 'stauts' (nearest command status)". Nothing where no word is left over, or no command belongs
 /// there.
 std::optional<std::string> unknown_command(const CLI::App& app) {
@@ -39,12 +56,8 @@ std::optional<std::string> unknown_command(const CLI::App& app) {
   const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
   const auto word = std::find_if_not(words.begin(), words.end(), is_option);
   if (word == words.end()) return std::nullopt;
-  std::vector<std::string> names;
-  for (const CLI::App* one : parent->get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(one->get_name());
-  }
-  if (names.empty()) return std::nullopt;
-  const auto nearest = daemon::nearest_of(names, *word);
+  if (commands_of(*parent).empty()) return std::nullopt;
+  const auto nearest = nearest_command(*parent, *word);
   return (path.empty() ? "" : path + ": ") + "unknown command '" + *word + "'" +
          (nearest ? " (nearest command " + *nearest + ")" : "");
 }

@@ -10,6 +10,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kInTree = "config/scenarios";
+constexpr int kBuildDepth = 5;  // build/PRESET/tests/ROOM/PROGRAM at most
+
 std::string names_in(const fs::path& folder) {
   std::set<std::string> names;
   std::error_code error;
@@ -21,12 +24,29 @@ std::string names_in(const fs::path& folder) {
   return text.empty() ? "no scenario" : text;
 }
 
+/// Of the source tree that the program was built in; empty where it stands in none.
+fs::path scenarios_of_source_tree(const fs::path& program) {
+  std::error_code error;
+  fs::path folder = program.parent_path();
+  for (int up = 0; up < kBuildDepth && !folder.empty(); ++up, folder = folder.parent_path()) {
+    fs::path scenarios = folder / kInTree;
+    if (fs::is_directory(scenarios, error)) return scenarios;
+  }
+  return {};
+}
+
 }  // namespace
 
-fs::path scenario_folder() {
-  const fs::path of_repository = "config/scenarios";
+fs::path scenario_folder(const fs::path& program) {
   std::error_code error;
-  return fs::is_directory(of_repository, error) ? of_repository : fs::path(DELTAMAP_INSTALLED_SCENARIOS);
+  if (fs::is_directory(kInTree, error)) return kInTree;
+  fs::path built_in = scenarios_of_source_tree(program);
+  return built_in.empty() ? fs::path(DELTAMAP_INSTALLED_SCENARIOS) : built_in;
+}
+
+fs::path scenario_folder() {
+  std::error_code error;
+  return scenario_folder(fs::read_symlink("/proc/self/exe", error));
 }
 
 fs::path scenario_file(const std::string& given) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/tool_run.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -48,11 +49,33 @@ TEST_F(ScenarioPlace, AnUnknownNameIsRefusedWithTheKnownOnes) {
   }
 }
 
-TEST_F(ScenarioPlace, OutsideTheRepositoryItIsTheInstalledFolder) {
+TEST_F(ScenarioPlace, AnInstalledProgramOutsideTheRepositoryTakesTheInstalledFolder) {
   fs::create_directory("elsewhere");
   fs::current_path("elsewhere");
-  EXPECT_TRUE(scenario_folder().is_absolute());
-  EXPECT_TRUE(scenario_folder().string().ends_with("/share/deltamap/scenarios"));
+  EXPECT_TRUE(scenario_folder("/usr/bin/deltamap").is_absolute());
+  EXPECT_TRUE(scenario_folder("/usr/bin/deltamap").string().ends_with("/share/deltamap/scenarios"));
+}
+
+TEST_F(ScenarioPlace, AProgramOfABuildTreeFindsThoseOfItsSourcesFromAnywhere) {
+  fs::create_directory("elsewhere");
+  fs::current_path("elsewhere");
+  EXPECT_EQ(scenario_folder(folder_.path() / "build/release/bin/deltamap"), folder_.path() / "config/scenarios");
+}
+
+TEST(CommandLine, NamesTheNearestCommandOneLevelBelow) {
+  const std::pair<const char*, const char*> nearest[] = {{"veiw", "view"},
+                                                         {"status", "ctl status"},
+                                                         {"stauts", "ctl status"},
+                                                         {"merge", "map merge"},
+                                                         {"carmn", "import carmen"}};
+  for (const auto& [word, command] : nearest) {
+    const auto run = test::run_deltamap({word});
+    EXPECT_EQ(run.exit_code, 2) << word;
+    EXPECT_NE(run.errors.find("unknown command '" + std::string(word) + "' (nearest command " + command + ")"),
+              std::string::npos)
+        << run.errors;
+  }
+  EXPECT_EQ(test::run_deltamap({"qqqqqqq"}).errors.find("nearest"), std::string::npos);
 }
 
 }  // namespace
