@@ -9,4 +9,7 @@ namespace deltamap::tool {
 /// std::runtime_error naming the file, FileInUse naming the daemon.
 void require_output_beside(const std::filesystem::path& output, const std::filesystem::path& read);
 
+/// A picture is written as PNG whatever its name says: another ending is refused. Throws std::runtime_error.
+void require_png(const std::filesystem::path& output);
+
 }  // namespace deltamap::tool

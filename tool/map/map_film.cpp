@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -47,9 +48,9 @@ std::vector<Step> steps_of(const mapping::store::MapStore& store) {
   return steps;
 }
 
-/// The newest at that time. Those of a run before count too.
+/// The newest at that time. Those of a run before count too. M_0 where none was ever accepted.
 std::uint32_t revision_at(const std::vector<Step>& steps, Timestamp time) {
-  std::uint32_t newest = steps.front().revision;
+  std::uint32_t newest = steps.empty() ? 0 : steps.front().revision;
   for (const Step& step : steps) {
     if (step.time <= time) newest = step.revision;
   }
@@ -76,11 +77,14 @@ std::vector<Point2> path_to(const std::vector<StampedPose>& poses, std::size_t l
 }
 
 void film(const FilmOptions& options) {
+  require_png(options.png);
   require_output_beside(options.png, options.store);
   const auto store = mapping::store::MapStore::to_read(options.store);
   if (!store.damage().empty()) std::cerr << "deltamap: " << store.damage() << "; the file is left as it is\n";
   const std::vector<Step> steps = steps_of(store);
+  if (steps.empty()) std::cerr << "deltamap: " << options.store << ": no revision was accepted; the film shows M_0\n";
   const std::vector<StampedPose> poses = simulation::score::read_trajectory(options.trajectory);
+  if (poses.empty()) throw std::runtime_error(options.trajectory + ": holds no pose");
   const Timestamp began = poses.front().time;
   const double whole_s = seconds(poses.back().time - began);
   std::uint32_t number = revision_at(steps, began);

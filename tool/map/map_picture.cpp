@@ -58,6 +58,7 @@ void add_scan_from(Scene& scene, const std::string& file) {
 }
 
 void draw(const PictureOptions& options) {
+  require_png(options.png);
   require_output_beside(options.png, options.map);
   require_output_beside(options.png, picture_named_in(options.map));
   const OccupancyGrid map = told_grid(options.map);

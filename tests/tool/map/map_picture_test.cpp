@@ -254,6 +254,25 @@ class PictureCommands : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(PictureCommands, RefuseAPictureOfAnotherKind) {
+  for (const char* name : {"p.svg", "p", "p.png.jpg"}) {
+    const auto run = run_deltamap({"map", "picture", file("m0.yaml"), file(name)});
+    EXPECT_EQ(run.exit_code, 1) << name;
+    EXPECT_NE(run.errors.find("only PNG is written"), std::string::npos) << run.errors;
+    EXPECT_FALSE(std::filesystem::exists(file(name)));
+  }
+  EXPECT_EQ(run_deltamap({"map", "picture", file("m0.yaml"), file("P.PNG")}).exit_code, 0);
+}
+
+TEST_F(PictureCommands, FilmARunThatHasAcceptedNothing) {
+  { const mapping::store::MapStore unchanged{folder_.path() / "unchanged.sqlite", room()}; }
+  const auto run =
+      run_deltamap({"map", "film", file("unchanged.sqlite"), file("film.png"), "--trajectory", file("run.tum")});
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_NE(run.errors.find("no revision was accepted; the film shows M_0"), std::string::npos) << run.errors;
+  EXPECT_GT(picture("film.png").width, 0U);
+}
+
 TEST_F(PictureCommands, DrawAMapWithAllThatIsAskedFor) {
   const auto scan = folder_.write("scan.json", R"({"time": 1, "pose": {"x_m": 1, "y_m": 0, "heading_rad": 0.5},
       "state": "tracking", "verdict": "right", "ends_m": [[1.0, 0.5], [1.5, 0.5]]})");
