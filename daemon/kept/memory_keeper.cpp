@@ -55,9 +55,10 @@ control::CommandOutcome MemoryKeeper::save(const SaveOrder& order) {
   } catch (const std::exception& error) {
     return {order.ticket, false, error.what()};
   }
+  const auto whole = [](const std::filesystem::path& path) { return std::filesystem::absolute(path).string(); };
   return {order.ticket, true,
-          "map " + std::to_string(order.pose.revision) + " saved as " + places_.saved_map.string() + ", pose as " +
-              places_.pose.string()};
+          "map " + std::to_string(order.pose.revision) + " saved as " + whole(places_.saved_map) + ", pose as " +
+              whole(places_.pose)};
 }
 
 }  // namespace deltamap::daemon
