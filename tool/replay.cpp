@@ -39,7 +39,7 @@ void run_replay(ReplayOptions& options) {
   auto& overrides = options.overrides;
   if (!options.initial_pose.empty()) overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
   if (options.seed) overrides.push_back("seed=" + std::to_string(*options.seed));
-  options.job.settings = daemon::read_settings(options.config, overrides);
+  options.job.settings = daemon::settings_or_defaults(options.config, overrides);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = true; });
   options.job.warn = [](const std::string& line) { std::cerr << "deltamap: warning: " << line << '\n'; };
   daemon::RunReport report;
@@ -53,7 +53,7 @@ void run_replay(ReplayOptions& options) {
   }
   for (const std::string& line : report.recording.lines()) std::cerr << "deltamap: warning: " << line << '\n';
   if (options.as_json)
-    std::cout << daemon::json_text(report, options.job.settings);
+    std::cout << daemon::json_text(report, daemon::settings_that_ran(options.job));
   else
     print_summary(report);
 }
@@ -65,7 +65,7 @@ void add_replay(CLI::App& app) {
   auto options = std::make_shared<ReplayOptions>();
   command->add_option("recording", options->job.recording, "pcapng of both ports")->required();
   command->add_option("--map", options->job.map, "M_0, map_server YAML")->required();
-  command->add_option("--config", options->config, "settings, YAML")->required();
+  command->add_option("--config", options->config, "settings, YAML; as delivered where it is not given");
   command->add_option("--out", options->job.out, "folder for trajectory.tum, map, changes.jsonl, report.json")
       ->required();
   command->add_option("--seed", options->seed, "over the settings' seed");

@@ -89,6 +89,7 @@ void add_replay(Json& json, const RunReport& report) {
       {"state", report.journal}, {"differences", report.journal_differences}, {"commands", report.commands}};
   json["began"] = report.began;
   json["recording"] = as_json(report.recording);
+  json["recording"]["file"] = report.recording_file;
 }
 
 }  // namespace

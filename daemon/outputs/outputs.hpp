@@ -67,6 +67,7 @@ struct RunReport {
   std::uint32_t journal_differences = 0;
   std::uint32_t commands = 0;                 ///< replay: of an operator, obeyed
   std::string began;                          ///< replay: what of the recorded run's beginning is used, or why not
+  std::string recording_file;                 ///< replay: what was replayed
   drivers::port::LogFaults recording;         ///< replay: what it lacks
   std::map<std::string, std::uint64_t> wire;  ///< decoder counts by cause
 };

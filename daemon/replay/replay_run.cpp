@@ -227,6 +227,18 @@ RunReport Replay::finish(const std::filesystem::path& out) {
 
 }  // namespace
 
+Settings settings_that_ran(const ReplayJob& job) {
+  const Settings as_delivered;
+  Settings ran = job.settings;
+  ran.map.file = job.map.string();
+  ran.map.store = as_delivered.map.store;
+  ran.map.newest = as_delivered.map.newest;
+  ran.recording.file = as_delivered.recording.file;
+  ran.robot.port = as_delivered.robot.port;
+  ran.laser.port = as_delivered.laser.port;
+  return ran;
+}
+
 RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   const auto began = std::chrono::steady_clock::now();
   const double began_cpu_s = process_cpu_s();
@@ -249,10 +261,11 @@ RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
     report = replay.finish(staging.path());
   }
   report.cpu_total_s = process_cpu_s() - began_cpu_s;
+  report.recording_file = job.recording.string();
   report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   report.peak_resident_bytes = peak_resident_bytes();
   LineFile file{staging.path() / "report.json"};
-  file.write(json_text(report, job.settings));
+  file.write(json_text(report, settings_that_ran(job)));
   file.flush();
   staging.commit();
   return report;

@@ -47,6 +47,9 @@ struct ReplayJob {
   std::function<void(const std::string&)> warn{};  ///< told what a person should know of map and pose, a line each
 };
 
+/// The settings of the job, as they ran: its own map and recording, and none of the files that only a live run has.
+[[nodiscard]] Settings settings_that_ran(const ReplayJob& job);
+
 /// Called now and then with the share that is done, 0 to 1; answers whether to go on.
 using ReplayProgress = std::function<bool(double)>;
 

@@ -82,7 +82,8 @@ void film(const FilmOptions& options) {
   const auto store = mapping::store::MapStore::to_read(options.store);
   if (!store.damage().empty()) std::cerr << "deltamap: " << store.damage() << "; the file is left as it is\n";
   const std::vector<Step> steps = steps_of(store);
-  if (steps.empty()) std::cerr << "deltamap: " << options.store << ": no revision was accepted; the film shows M_0\n";
+  const bool has_changed = std::any_of(steps.begin(), steps.end(), [](const Step& step) { return step.revision > 0; });
+  if (!has_changed) std::cerr << "deltamap: " << options.store << ": no revision was accepted; the film shows M_0\n";
   const std::vector<StampedPose> poses = simulation::score::read_trajectory(options.trajectory);
   if (poses.empty()) throw std::runtime_error(options.trajectory + ": holds no pose");
   const Timestamp began = poses.front().time;

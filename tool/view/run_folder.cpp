@@ -180,8 +180,20 @@ daemon::LocalizationRow row_in(const std::string& line, const std::vector<const 
   return row;
 }
 
+/// Older runs have scans whose stamps step back: shown in the order of their stamps, which is told.
+void put_in_order(const fs::path& file, int back_steps, int first_back, RunFolder& run) {
+  if (back_steps == 0) return;
+  std::stable_sort(run.rows.begin(), run.rows.end(),
+                   [](const Row& one, const Row& other) { return one.time < other.time; });
+  run.notes.push_back(file.string() + ":" + std::to_string(first_back) + ": the time steps back" +
+                      (back_steps == 1 ? "" : ", as in " + std::to_string(back_steps - 1) + " lines more") +
+                      "; scans are shown in the order of their times");
+}
+
 void read_rows(const fs::path& file, RunFolder& run) {
   std::vector<const Assign*> order;
+  int back_steps = 0;
+  int first_back = 0;
   const bool is_cut = each_line(file, [&](const std::string& line, int number) {
     if (number == 1) {
       order = columns_named(file, line);
@@ -193,8 +205,10 @@ void read_rows(const fs::path& file, RunFolder& run) {
       fail(file, number, error.what());
     }
     const std::size_t count = run.rows.size();
-    if (count > 1 && run.rows[count - 1].time < run.rows[count - 2].time) fail(file, number, "the time steps back");
+    const bool steps_back = count > 1 && run.rows[count - 1].time < run.rows[count - 2].time;
+    if (steps_back && ++back_steps == 1) first_back = number;
   });
+  put_in_order(file, back_steps, first_back, run);
   if (order.empty()) fail(file, 1, "has no line with the names of its columns");
   if (is_cut) run.notes.push_back(file.string() + ": its last line is cut");
   if (run.rows.empty()) throw std::runtime_error(file.string() + ": holds no scan");

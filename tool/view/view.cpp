@@ -122,15 +122,14 @@ std::optional<std::string> replayed(const daemon::ReplayJob& job, ViewDesk& desk
 daemon::Settings settings_of(const ViewOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.initial_pose.empty()) overrides.push_back("localization.initial_pose=[" + options.initial_pose + "]");
-  daemon::Settings settings = daemon::read_settings(options.config, overrides);
+  daemon::Settings settings = daemon::settings_or_defaults(options.config, overrides);
   settings.dashboard.control = false;
   return settings;
 }
 
 void view_recording(const ViewOptions& options) {
-  if (options.config.empty() || options.job.map.empty()) {
-    throw std::runtime_error(options.target.string() +
-                             ": a recording needs --map and --config, as `deltamap replay` does");
+  if (options.job.map.empty()) {
+    throw std::runtime_error(options.target.string() + ": a recording needs --map, as `deltamap replay` does");
   }
   daemon::ReplayJob job = options.job;
   job.settings = settings_of(options);
@@ -178,7 +177,8 @@ void add_view(CLI::App& app) {
       ->required();
   command->add_option("--port", options->port, "of the page, on loopback; 0 (as delivered): any that is free");
   command->add_option("--map", options->job.map, "of a recording: M_0, map_server YAML");
-  command->add_option("--config", options->config, "of a recording: settings, YAML");
+  command->add_option("--config", options->config,
+                      "of a recording: settings, YAML; as delivered where it is not given");
   command->add_option("--set", options->overrides, "of a recording: key=value over the settings; repeatable")
       ->allow_extra_args(false);
   command->add_option("--initial-pose", options->initial_pose,

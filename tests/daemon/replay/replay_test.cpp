@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/files/grid_file.hpp"
 #include "daemon/replay/replay_run.hpp"
@@ -96,6 +97,20 @@ TEST_F(ReplayTest, SaysWhatALiveRunWouldSayOfPoseAndMount) {
   EXPECT_EQ(error_of(wrong), "");
   EXPECT_NE(said.find(" s: the start pose does not fit: "), std::string::npos) << said;
   EXPECT_NE(said.find("'laser.mount.upside_down: false'"), std::string::npos) << said;
+}
+
+TEST_F(ReplayTest, TheReportNamesWhatReallyRan) {
+  ReplayJob told = job();
+  told.settings.map.file = "/etc/deltamap/other.yaml";
+  told.settings.map.store = "/var/lib/deltamap/other.sqlite";
+  told.settings.robot.port = "/dev/other";
+  EXPECT_EQ(error_of(told), "");
+  const auto report = nlohmann::json::parse(content_of(folder_.path() / "out/report.json"));
+  EXPECT_EQ(report["recording"]["file"], (folder_.path() / "drive.pcapng").string());
+  EXPECT_EQ(report["settings"]["changed"]["map.file"], (folder_.path() / "room.yaml").string());
+  for (const char* of_a_live_run : {"map.store", "robot.port"}) {
+    EXPECT_FALSE(report["settings"]["changed"].contains(of_a_live_run)) << of_a_live_run;
+  }
 }
 
 TEST_F(ReplayTest, FindsTheSameChangesHoweverMuchUnknownSpaceLiesAroundTheMap) {

@@ -149,6 +149,23 @@ TEST_F(ViewTest, AFolderIsReadAsTheRunWroteIt) {
   EXPECT_EQ(read.settings.localizer.particles.max, 200) << "as report.json has it";
 }
 
+TEST_F(ViewTest, ARunWhoseStampsStepBackIsReadInTheirOrderAndSaysSo) {
+  const RunFolder whole = read_run_folder(run());
+  const std::string log = test::content_of(run() / "localization.csv");
+  std::vector<std::string> lines;
+  std::istringstream in{log};
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  replace_line("localization.csv", 40, lines[40]);
+  replace_line("localization.csv", 41, lines[39]);
+  const RunFolder read = read_run_folder(run());
+  ASSERT_EQ(read.rows.size(), whole.rows.size());
+  for (std::size_t i = 0; i < read.rows.size(); ++i) EXPECT_EQ(read.rows[i].number, whole.rows[i].number) << i;
+  ASSERT_EQ(read.notes.size(), 1U);
+  EXPECT_NE(read.notes[0].find("localization.csv:41: the time steps back; scans are shown in the order of their times"),
+            std::string::npos)
+      << read.notes[0];
+}
+
 TEST_F(ViewTest, AMomentHoldsThePoseOfItsTime) {
   serve_folder();
   const RunFolder read = read_run_folder(run());
@@ -298,8 +315,7 @@ TEST_F(ViewTest, BadInputIsOneLineAndExitCodeOne) {
   fs::create_directories(empty);
   EXPECT_EQ(refused({empty}), "deltamap: " + empty + ": is no folder of a run: it has no localization.csv\n");
   const std::string recording = (folder_.path() / "drive.pcapng").string();
-  EXPECT_EQ(refused({recording}),
-            "deltamap: " + recording + ": a recording needs --map and --config, as `deltamap replay` does\n");
+  EXPECT_EQ(refused({recording}), "deltamap: " + recording + ": a recording needs --map, as `deltamap replay` does\n");
   const std::vector<std::string> how{"--map", folder_.path() / "room.yaml", "--config",
                                      test::source_path("config/simulation.yaml")};
   const std::string text = folder_.write("text.pcapng", "no recording\n").string();
