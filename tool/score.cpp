@@ -7,6 +7,9 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
 
 #include "simulation/score/change_score.hpp"
 #include "simulation/score/trajectory_score.hpp"
@@ -34,8 +37,10 @@ struct Tally {
   std::size_t eligible = 0;
   std::size_t found = 0;
 
-  [[nodiscard]] double recall() const {
-    return eligible == 0 ? 1.0 : static_cast<double>(found) / static_cast<double>(eligible);
+  /// Nothing where there was nothing to find.
+  [[nodiscard]] std::optional<double> recall() const {
+    if (eligible == 0) return std::nullopt;
+    return static_cast<double>(found) / static_cast<double>(eligible);
   }
 };
 
@@ -67,7 +72,8 @@ Json json_of_change(const score::ScoredChange& change, Timestamp start) {
 Json json_of_score(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes, Timestamp start) {
   const Tally all{changes.eligible, changes.found};
   const auto json_of_tally = [](const Tally& t) {
-    return Json{{"found", t.found}, {"eligible", t.eligible}, {"recall", t.recall()}};
+    const auto recall = t.recall();
+    return Json{{"found", t.found}, {"eligible", t.eligible}, {"recall", recall ? Json(*recall) : Json(nullptr)}};
   };
   Json json;
   json["localization"] = {{"poses", trajectory.poses},
@@ -85,16 +91,29 @@ Json json_of_score(const score::TrajectoryScore& trajectory, const score::Change
   return json;
 }
 
-void print_score(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes) {
+/// "changes found: 12 of 13 seen for 10 s (92.3 %); …"
+std::string changes_line(const score::ChangeScore& changes) {
   const Tally all{changes.eligible, changes.found};
   const Tally appeared = tally(changes, true);
   const Tally gone = tally(changes, false);
+  std::ostringstream line;
+  line << std::fixed << std::setprecision(1);
+  if (const auto recall = all.recall()) {
+    line << "changes found: " << all.found << " of " << all.eligible << " seen for 10 s (" << 100.0 * *recall
+         << " %); appeared " << appeared.found << "/" << appeared.eligible << ", gone " << gone.found << "/"
+         << gone.eligible;
+  } else {
+    line << "changes found: nothing to score, since no change was seen for 10 s";
+  }
+  line << "; not seen or overtaken: " << changes.changes.size() - all.eligible;
+  return line.str();
+}
+
+void print_score(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes) {
   std::cout << std::fixed << std::setprecision(3) << "localization: median " << trajectory.median_m << " m, p95 "
             << trajectory.p95_m << " m, max " << trajectory.max_m << " m, beyond 0.5 m " << std::setprecision(1)
             << 100.0 * trajectory.share_beyond_half_metre << " % of " << trajectory.poses << " poses\n"
-            << "changes found: " << all.found << " of " << all.eligible << " seen for 10 s (" << 100.0 * all.recall()
-            << " %); appeared " << appeared.found << "/" << appeared.eligible << ", gone " << gone.found << "/"
-            << gone.eligible << "; not seen or overtaken: " << changes.changes.size() - all.eligible << '\n'
+            << changes_line(changes) << '\n'
             << std::setprecision(2) << "ghosts: " << changes.ghosts_m2 << " m², of which " << changes.stale_ghosts_m2
             << " m² stand since the start map\n";
 }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap score` of a simulation in which nothing has changed.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/tool_run.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+TEST(Score, SaysWhereThereIsNothingToScore) {
+  const test::TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };
+  const std::string world =
+      folder.write("world.yaml", "walls:\n  - [[0, 0], [4, 0], [4, 3], [0, 3], [0, 0]]\nrobot:\n  start: [1, 1, 0]\n")
+          .string();
+  ASSERT_EQ(test::run_deltamap({"sim", "--world", world, "--write-map", file("map.yaml")}).exit_code, 0);
+  const std::string truth =
+      folder.write("truth.jsonl", "{\"t_ns\":10000000000,\"pose\":[1,1,0]}\n{\"t_ns\":30000000000,\"pose\":[1,1,0]}\n")
+          .string();
+  const std::string trajectory = folder.write("run.tum", "11 1 1 0 0 0 0 1\n29 1 1 0 0 0 0 1\n").string();
+  const std::vector<std::string> words{"score",         "--truth",  truth,   "--world",        world,
+                                       "--trajectory",  trajectory, "--map", file("map.yaml"), "--start-map",
+                                       file("map.yaml")};
+  const test::ToolRun told = test::run_deltamap(words);
+  ASSERT_EQ(told.exit_code, 0) << told.errors;
+  EXPECT_NE(told.output.find("nothing to score, since no change was seen for 10 s"), std::string::npos) << told.output;
+  EXPECT_EQ(told.output.find("(100"), std::string::npos) << told.output;
+  std::vector<std::string> as_json = words;
+  as_json.push_back("--json");
+  const auto json = nlohmann::json::parse(test::run_deltamap(as_json).output);
+  EXPECT_TRUE(json["changes"]["recall"].is_null());
+  EXPECT_EQ(json["changes"]["eligible"], 0);
+}
+
+}  // namespace
+}  // namespace deltamap::tool
