@@ -82,7 +82,7 @@ class PageForAll(PageCase):
                                   model.particles = [];
                                   const ends = Array.from({ length: 80 }, (_, i) => (i % 2 ? y_m + 1 : x_m + i / 40));
                                   model.stored = [{ x: x_m, y: y_m, heading: 0, waits: false, ends }];
-                                  view.show(x_m, y_m); view.scale = 60; view.draw();""")
+                                  view.scale = 60; view.show(x_m, y_m); view.draw();""")
         self.assertGreater(browser.execute_script(colours), 100)
         browser.press("#layer-stored", SPACE)
         browser.execute_script("window.deltamap.view.draw()")
