@@ -46,6 +46,26 @@ TEST(Obedience, IsShownByARobotThatGathersAndLosesSpeedAsItIsSetTo) {
   EXPECT_FALSE(robot.disobeyed);
 }
 
+TEST(Obedience, IsShownByARobotThatActsAsLateAsItMayOnWhatItWasToldLongBefore) {
+  constexpr double kLateS = 0.4;
+  for (const double brakes_m_per_s2 : {0.3, 2.0}) {
+    Obedience obedience;
+    Odometry odometry;
+    odometry.motors_enabled = true;
+    odometry.speed_m_per_s = 0.7;
+    obedience.told({0.7, 0.0}, kBegin);
+    for (int step = 1; step <= 60; ++step) {
+      odometry.time = kBegin + duration_from_seconds(kToldEveryS * step);
+      const double told_to_stand_s = kToldEveryS * (step - 20);  // by the first word for two seconds
+      if (told_to_stand_s >= 0.0) obedience.told({0.0, 0.0}, odometry.time);
+      const double brakes_s = std::max(0.0, told_to_stand_s - kLateS);
+      odometry.speed_m_per_s = std::max(0.0, 0.7 - brakes_m_per_s2 * brakes_s);
+      obedience.observe(odometry, {.watchdog_s = 2.0, .deceleration_m_per_s2 = brakes_m_per_s2});
+      ASSERT_FALSE(obedience.disobeys()) << brakes_m_per_s2 << " m/s², " << told_to_stand_s << " s after the order";
+    }
+  }
+}
+
 TEST(Obedience, IsNotShownByARobotThatGoesOnThoughItIsToldToStand) {
   Robot robot;
   robot.pass(3.0, {0.4, 0.0});
