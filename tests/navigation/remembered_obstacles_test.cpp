@@ -46,6 +46,19 @@ TEST(RememberedObstacles, HaveLeftWhereEveryBeamGoesThrough) {
   EXPECT_TRUE(remembered_obstacles(thing_at({3.0, 4.0}), open_view(), {}).empty());
 }
 
+TEST(RememberedObstacles, HaveLeftOrStayByWhereTheLaserIsMounted) {
+  TrackedScan tracked = open_view();
+  tracked.estimate.map_from_robot = {5.0, 5.0, 0.0};
+  tracked.scan.robot_from_laser = {0.2, 0.1, radians(90.0)};  // from 0° ahead over the left to 180° behind
+  EXPECT_TRUE(remembered_obstacles(thing_at({3.75, 5.75}), tracked, {}).empty()) << "behind on the left: seen through";
+  EXPECT_EQ(remembered_obstacles(thing_at({5.75, 3.75}), tracked, {}).size(), 1u)
+      << "ahead on the right: not looked at";
+  tracked.scan.robot_from_laser = {-1.0, 0.0, 0.0};
+  for (Beam& beam : tracked.scan.beams) beam.range_m = 2.6F;
+  EXPECT_EQ(remembered_obstacles(thing_at({6.85, 5.05}), tracked, {}).size(), 1u)
+      << "1.9 m ahead of the robot, 2.9 m of a laser at its stern: no beam reaches it";
+}
+
 TEST(RememberedObstacles, StayWhereABeamBringsNothingBack) {
   EXPECT_EQ(remembered_obstacles(thing_at({3.0, 4.0}), open_view(BeamKind::kNotValid), {}).size(), 1u);
 }
