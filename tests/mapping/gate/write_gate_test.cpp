@@ -237,6 +237,19 @@ TEST_F(DrivenGate, ARobotThatIsCarriedWhileItsPoseIsConfirmedBeginsAnew) {
   EXPECT_TRUE(gate.is_open());
 }
 
+TEST_F(DrivenGate, ARobotThatIsCarriedWhileItsPoseIsConfirmedHasTheWholeWayBeforeIt) {
+  disbelieve(robot, gate);
+  drive(robot, gate, 7.0);  // 3.5 of 4 m
+  const Timestamp at = robot.now();
+  robot.speed_m_per_s = 0.0;
+  drive(robot, gate, 20.0, at);
+  robot.speed_m_per_s = kSpeed_m_per_s;
+  drive(robot, gate, 7.5, at);
+  EXPECT_FALSE(gate.is_open()) << "what it drove before somebody carried it tells nothing of the pose since";
+  drive(robot, gate, 1.0, at);
+  EXPECT_TRUE(gate.is_open());
+}
+
 TEST(WriteGate, NamesTheOtherHypothesisThatLeavesThePoseDoubtful) {
   EXPECT_EQ(reason_after([](Estimate& e) {
               e.belief.pose_right = 0.6;
