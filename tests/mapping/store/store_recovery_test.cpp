@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <numeric>
 #include <string>
@@ -121,6 +122,22 @@ TEST_F(StoreRecovery, IsEveryRevisionWhereAPageIsGone) {
     ASSERT_EQ(recovered().words(), "100 revisions recovered") << page;
     expect_whole(std::to_string(page));
     if (HasFatalFailure()) return;
+  }
+}
+
+TEST_F(StoreRecovery, KeepsARevisionWithANameThroughWhateverIsThinnedOutLater) {
+  write(100);
+  for (const bool has_lost_its_grid : {false, true}) {
+    if (has_lost_its_grid) damage("revision", 33);  // what is left of it is its copy, which has a name and no grid
+    EXPECT_EQ(recovered().words(), "100 revisions recovered");
+    MapStore found = store();
+    while (found.thin_out({.revisions = 5}, timestamp_from_ns(1'000'000'000))) continue;
+    const auto history = found.history();
+    EXPECT_LT(history.size(), 60u) << "others are thinned out";
+    EXPECT_TRUE(std::any_of(history.begin(), history.end(), [](const StoredRevision& one) {
+      return one.number == 33 && one.name == "before the move";
+    })) << has_lost_its_grid;
+    EXPECT_EQ(found.grid(33), maps[33]);
   }
 }
 
