@@ -114,6 +114,16 @@ TEST(LmsTelegram, DoesNotReadAcknowledgementsOutOfGarbage) {
   EXPECT_EQ(decoder.decode(bytes_from_hex("06"), kStart + std::chrono::milliseconds{50}).size(), 1u);
 }
 
+TEST(LmsTelegram, ReadsAcknowledgementsAgainBehindAGoodTelegram) {
+  TelegramDecoder decoder{Sender::kDevice, kBaud};
+  const auto telegrams = decoder.decode(bytes_from_hex("dc05 06 02800300a00010160a 06 15"), kStart);
+  ASSERT_EQ(telegrams.size(), 3u);
+  EXPECT_EQ(telegrams[0].kind, Kind::kTelegram);
+  EXPECT_EQ(telegrams[1].kind, Kind::kAck);
+  EXPECT_EQ(telegrams[2].kind, Kind::kNak);
+  EXPECT_EQ(decoder.counts().garbage_bytes, 3u) << "what came before it";
+}
+
 TEST(LmsTelegram, HasNoAcknowledgementsFromTheHost) {
   TelegramDecoder decoder{Sender::kHost, kBaud};
   EXPECT_TRUE(decoder.decode(bytes_from_hex("06"), kStart).empty());
