@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "daemon/settings/settings_documents.hpp"
 #include "tests/support/files/source_tree.hpp"
 #include "tests/support/files/temporary_folder.hpp"
@@ -68,6 +71,16 @@ TEST(Settings, DegreesInTheFileAreRadiansBehindIt) {
       parse_settings("laser: {mount: {yaw_deg: 90}}\nlocalization: {initial_pose: [1, 2, -90]}", "f");
   EXPECT_DOUBLE_EQ(settings.laser.session.robot_from_laser.theta, radians(90.0));
   EXPECT_DOUBLE_EQ(settings.initial_pose->theta, radians(-90.0));
+}
+
+TEST(Settings, AHeadingIsWrappedHoweverOftenItGoesRound) {
+  for (const double turned_deg : {-350.0, -190.0, -180.0, 0.0, 180.0, 190.0, 270.0, 360.0, 725.0}) {
+    const std::string pose = "localization.initial_pose=[1, 2, " + std::to_string(turned_deg) + "]";
+    const double theta = parse_settings("", "f", {pose}).initial_pose->theta;
+    EXPECT_GT(theta, -std::numbers::pi - 1e-12) << turned_deg;
+    EXPECT_LE(theta, std::numbers::pi + 1e-12) << turned_deg;
+    EXPECT_NEAR(std::remainder(theta - radians(turned_deg), 2.0 * std::numbers::pi), 0.0, 1e-9) << turned_deg;
+  }
 }
 
 TEST(Settings, OneKeySaysHowFarABeamSaysAndDrawsSomething) {
