@@ -38,6 +38,8 @@ class TurnedLaser {
   double drive_until_contradicted(double speed_m_per_s, double turn_rate_rad_per_s = 0.0) {
     return drive(speed_m_per_s, turn_rate_rad_per_s, 1.0, [&] { return watch.contradicts_wheels(); });
   }
+  /// Somebody pushes the robot: its wheels slide.
+  void shove(double aside_m) { map_from_robot_ = map_from_robot_ * Pose2{0.0, aside_m, 0.0}; }
   void pass(double for_s) { now_ += duration_from_seconds(for_s); }
 
   void look() {
@@ -113,6 +115,25 @@ TEST(MotionWatch, ContradictsWheelsThatSpinFromTheStart) {
   robot.wheels_spin = true;
   robot.look();
   EXPECT_LT(robot.drive_until_contradicted(kCreepingMPerS), kFreeM - kStandsM);
+}
+
+TEST(MotionWatch, ForgetsASingleContradictionOnceScansHaveFollowedTheWheelsAgain) {
+  const auto never = [] { return false; };
+  const auto contradicted_by_shoves = [&](double aside_m, double way_between_m) {
+    TurnedLaser robot;
+    robot.drive(0.3, 0.0, 0.4, never);
+    for (const double side : {1.0, -1.0, 1.0}) {
+      robot.shove(side * aside_m);
+      robot.drive(0.3, 0.0, 0.28, never);
+      if (robot.watch.contradicts_wheels()) return true;
+      robot.drive(0.3, 0.6, way_between_m, never);
+    }
+    return false;
+  };
+  for (const double aside_m : {0.9, 1.0}) {
+    EXPECT_TRUE(contradicted_by_shoves(aside_m, 0.0)) << "one after another: " << aside_m;
+    EXPECT_FALSE(contradicted_by_shoves(aside_m, 0.9)) << "long after the one before: " << aside_m;
+  }
 }
 
 TEST(MotionWatch, TakesTheLaserForWellMountedAfterAMetreThatShowsNothing) {
