@@ -189,6 +189,23 @@ TEST_F(LiveSettingsTest, WhatTheFileEndedWithIsTheLastFileThatWasTaken) {
   EXPECT_TRUE(live.reload(take_).done) << "in another order";
 }
 
+TEST_F(LiveSettingsTest, AFileThatIsCutBehindWhatAnEarlierOneEndedWithChangesNothing) {
+  LiveSettings live = begun();  // ends with the seed
+  const std::string longer =
+      "seed: 3\nrecording:\n  max_gigabytes: 40\n";  // no live key: its loss shows by the end alone
+  write(longer);
+  EXPECT_EQ(live.reload(take_).lines, Lines{"needs a restart: recording.max_gigabytes: 40 (in force 8)"});
+  write("seed: 3\n");
+  EXPECT_EQ(live.reload(take_).lines,
+            (Lines{"the settings stay as they are: the file does not say any more what it said",
+                   file_.string() + ": 'recording.max_gigabytes', with which it ended before, is gone: is it cut? Put "
+                                    "the key back, or restart"}));
+  write(longer);
+  EXPECT_TRUE(live.reload(take_).done);
+  write("recording:\n  max_gigabytes: 40\n");
+  EXPECT_TRUE(live.reload(take_).done) << "the seed is not what the newest file has ended with";
+}
+
 TEST(LiveKeys, AreThoseThatDecideNoResultAndNeverWhoDrives) {
   Settings settings;
   const std::vector<SettingKey> keys = keys_of(settings);
