@@ -139,5 +139,15 @@ TEST_F(RunContradictions, WhoWandersLooksWhereHeDrives) {
   EXPECT_EQ(told({"navigation.mode=wander", "laser.variant=100/1"}), Lines{});
 }
 
+TEST_F(RunContradictions, WhoWandersLooksAsWideAsHisHullAndItsMargin) {
+  const auto ahead_by = [&](const std::string& x_m, const std::string& margin_m) {
+    return told({"navigation.mode=wander", "laser.mount.x_m=" + x_m, "navigation.safety.robot_radius_m=0.3",
+                 "navigation.safety.margin_m=" + margin_m});
+  };
+  EXPECT_EQ(ahead_by("0.35", "0.1"), Lines{}) << "before the hull, but not before its margin";
+  EXPECT_EQ(ahead_by("0.35", "0").size(), 1u);
+  EXPECT_EQ(ahead_by("0.25", "0"), Lines{});
+}
+
 }  // namespace
 }  // namespace deltamap::daemon
