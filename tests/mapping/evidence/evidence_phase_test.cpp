@@ -61,6 +61,39 @@ TEST(EvidencePhase, CountsForAParkedRobotByTime) {
   EXPECT_GE(drive.revisions, 1);
 }
 
+constexpr double kNever_s = 80.0;
+constexpr double kBetweenScans_s = 0.2;
+
+/// When a parked robot hands on its first set of a box that becomes wider at that time.
+double first_set_s(const EvidencePhaseParams& params, double wider_at_s) {
+  EvidencePhase phase{params};
+  Random random{5};
+  const auto map = std::make_shared<const OccupancyGrid>(hall());
+  const OccupancyGrid narrow = hall_with({11.0, 8.0}, {12.0, 8.4}, CellState::kOccupied);
+  const OccupancyGrid wide = hall_with({11.0, 8.0}, {13.0, 8.4}, CellState::kOccupied);
+  for (double time_s = 0.0; time_s < kNever_s; time_s += kBetweenScans_s) {
+    const OccupancyGrid& world = time_s < wider_at_s ? narrow : wide;
+    const Pose2 pose = test::below_the_containers(time_s, 0.0);
+    if (phase.observe(test::drawn_scan(world, map, pose, time_s, random))) return time_s;
+  }
+  return kNever_s;
+}
+
+TEST(EvidencePhase, HandsARegionOnOnceItHasCeasedToGrowOrHasWaitedTooLong) {
+  constexpr double kWiderAt_s = 2.0;  // what is new is proven seconds later, while the rest waits
+  constexpr double kLonger_s = 5.0;
+  EvidencePhaseParams params;
+  params.settle_s = params.most_wait_s = 20.0;
+  const double from_the_oldest_s = first_set_s(params, kWiderAt_s);
+  EXPECT_GT(from_the_oldest_s, params.most_wait_s);
+  params.most_wait_s += kLonger_s;
+  EXPECT_NEAR(first_set_s(params, kWiderAt_s), from_the_oldest_s + kLonger_s, 1.0);
+  params.most_wait_s = kNever_s;
+  const double from_the_newest_s = first_set_s(params, kWiderAt_s);
+  EXPECT_GT(from_the_newest_s, from_the_oldest_s + kLonger_s);
+  EXPECT_LT(from_the_newest_s, kNever_s);
+}
+
 TEST(EvidencePhase, SaysNothingWhileThePoseIsLost) {
   StoreScan store{StoreScanParams{}, 1};
   Random random{5};
