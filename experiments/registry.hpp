@@ -24,6 +24,7 @@ namespace deltamap::experiments {
 [[nodiscard]] Experiment shifted_hall_experiment();
 [[nodiscard]] Experiment unseen_experiment();
 [[nodiscard]] Experiment first_map_experiment();
+[[nodiscard]] Experiment bent_maps_experiment();
 [[nodiscard]] Experiment ablation_experiment();
 /// table2, fig10-12, endurance, and others of their kind.
 [[nodiscard]] std::vector<Experiment> changing_world_experiments();

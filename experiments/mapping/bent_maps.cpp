@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// `bent-maps`: maps of known truth, good ones and others that were bent on purpose, judged by `map quality`. Buildings,
+// lasers and people are those of `unseen`, two drives each.
+#include <cmath>
+#include <string>
+
+#include "experiments/mapping/bent_drive.hpp"
+#include "experiments/mapping/unseen_drive.hpp"
+#include "experiments/registry.hpp"
+#include "localization/motion/deskew.hpp"
+#include "localization/motion/odometry_buffer.hpp"
+#include "mapping/alignment/local_map.hpp"
+#include "simulation/drawn/unseen_world.hpp"
+#include "surveying/quality/map_quality.hpp"
+
+namespace deltamap::experiments {
+namespace {
+
+constexpr int kSeeds = 20;
+constexpr int kQuickSeeds = 2;
+constexpr double kMinutes = 8.0;  // both drives together
+constexpr double kQuickMinutes = 4.0;
+constexpr double kKeptM = 0.25;
+constexpr double kKeptRad = radians(8.0);
+constexpr double kResolutionM = 0.05;
+// Between these a map is neither good nor worth calling false: noise draws a decimetre of wall twice.
+constexpr double kGoodDoubledM = 1.0;
+constexpr double kFalseDoubledM = 3.0;
+constexpr double kLeastShare = 0.98;
+
+DrivenScans driven_scans(std::uint64_t seed, double minutes, const localization::LocalizerParams& localizer) {
+  const auto world = simulation::drawn::unseen_world(simulation::drawn::unseen_kind(seed), seed);
+  simulation::VirtualDriveParams params = world.drawn.drive;
+  params.forklift.reset();
+  params.creep.reset();
+  params.changed_at_start.reset();
+  params.changes_at_start.clear();
+  simulation::VirtualDrive drive{world.drawn.scenario, params};
+  Random random{seed};
+  localization::motion::OdometryBuffer odometry{localizer.odometry};
+  DrivenScans driven;
+  std::optional<Timestamp> began;
+  std::uint32_t number = 0;
+  for (;;) {
+    simulation::DriveStep now = drive.next();
+    if (!began) began = now.scan.time;
+    const double passed_s = seconds(now.scan.time - *began);
+    if (passed_s > 60.0 * minutes) return driven;
+    for (const Odometry& one : now.odometry) odometry.add(one);
+    if (number == 0 && passed_s > 30.0 * minutes) {
+      number = 1;
+      drive.kidnap(drive.place_anywhere(random));
+      continue;
+    }
+    if (!driven.truth.empty() && driven.drive.back() == number) {
+      const Pose2 moved = motion_between(driven.truth.back(), now.map_from_robot);
+      if (moved.position().norm() < kKeptM && std::abs(moved.theta) < kKeptRad) continue;
+    }
+    TrackedScan tracked;
+    tracked.rays = localization::motion::deskewed(now.scan, odometry.velocity_at(now.scan.time));
+    tracked.scan = std::move(now.scan);
+    driven.scans.push_back(std::move(tracked));
+    driven.drive.push_back(number);
+    driven.truth.push_back(now.map_from_robot);
+  }
+}
+
+surveying::quality::MapQuality quality_of(const DrivenScans& driven, const std::vector<Pose2>& poses) {
+  std::vector<const TrackedScan*> scans;
+  std::vector<surveying::quality::PlacedScan> placed;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    scans.push_back(&driven.scans[i]);
+    placed.push_back({&driven.scans[i], poses[i], driven.drive[i]});
+  }
+  return surveying::quality::map_quality(mapping::alignment::local_map(scans, poses, {0, 0, kResolutionM, {0.0, 0.0}},
+                                                                       {.longest_m = 25.0, .least_hits = 2}),
+                                         placed);
+}
+
+/// A scale error is false however little of it two passes happen to see.
+bool is_false(Bend bend, double doubled_m) { return bend == Bend::kScale || doubled_m >= kFalseDoubledM; }
+bool is_good(Bend bend, double doubled_m) { return bend != Bend::kScale && doubled_m <= kGoodDoubledM; }
+
+Outcome judged(std::uint64_t seed, double minutes, const Options& options) {
+  const DrivenScans driven = driven_scans(seed, minutes, options.localizer);
+  Random random{seed};
+  Outcome outcome;
+  outcome.labels = {{"seed", std::to_string(seed)},
+                    {"layout", std::string{name_of(simulation::drawn::unseen_kind(seed).layout)}}};
+  double bent_maps = 0.0;
+  double called_false = 0.0;
+  double good_maps = 0.0;
+  double called_good = 0.0;
+  std::string missed;
+  for (const Bend bend : kBends) {
+    const std::vector<Pose2> poses = bent(bend, driven, random);
+    const double doubled_m = doubled_wall_m(driven, poses);
+    const bool told = quality_of(driven, poses).is_false();
+    bent_maps += is_false(bend, doubled_m) ? 1.0 : 0.0;
+    called_false += is_false(bend, doubled_m) && told ? 1.0 : 0.0;
+    good_maps += is_good(bend, doubled_m) ? 1.0 : 0.0;
+    called_good += is_good(bend, doubled_m) && !told ? 1.0 : 0.0;
+    if ((is_false(bend, doubled_m) && !told) || (is_good(bend, doubled_m) && told)) {
+      missed += (missed.empty() ? "" : ", ") + std::string{name_of(bend)};
+    }
+  }
+  outcome.labels.emplace_back("missed", missed);
+  outcome.numbers = {
+      {"bent", bent_maps}, {"called_false", called_false}, {"good", good_maps}, {"called_good", called_good}};
+  return outcome;
+}
+
+std::vector<Run> runs_of(const Options& options) {
+  return unseen_runs(options, {kSeeds, kQuickSeeds, kMinutes, kQuickMinutes},
+                     [options](std::uint64_t seed, double minutes) { return judged(seed, minutes, options); });
+}
+
+Report report_of(const std::vector<Outcome>& outcomes) {
+  const auto sum = [&](const char* number) {
+    double all = 0.0;
+    for (const Outcome& outcome : outcomes) all += outcome.number(number);
+    return all;
+  };
+  Report report;
+  report.figures = {{.name = "bent maps", .value = sum("bent")},
+                    {.name = "of them called false",
+                     .value = sum("called_false") / sum("bent"),
+                     .target = Target{.least = kLeastShare}},
+                    {.name = "good maps", .value = sum("good")},
+                    {.name = "of them called good",
+                     .value = sum("called_good") / sum("good"),
+                     .target = Target{.least = kLeastShare}}};
+  return report;
+}
+
+}  // namespace
+
+Experiment bent_maps_experiment() {
+  return {.name = "bent-maps",
+          .what = "Maps that were bent on purpose, and good ones: are they called so?",
+          .runs = runs_of,
+          .report = report_of};
+}
+
+}  // namespace deltamap::experiments
