@@ -26,7 +26,8 @@ void cover(Faults& faults, double from_deg, double to_deg) {
 }
 void uncover(Faults& faults) {
   faults.laser.covered_from_rad = faults.laser.covered_to_rad = 0.0;
-  faults.laser.covered_answer = BeamKind::kBeyondMaximum;
+  faults.laser.covered_answer = LaserFaults{}.covered_answer;
+  faults.laser.covered_m = LaserFaults{}.covered_m;
 }
 
 void grip(Faults& faults, double share) { faults.body.left_grip = faults.body.right_grip = share; }

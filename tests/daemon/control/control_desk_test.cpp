@@ -177,7 +177,7 @@ TEST_F(ControlDeskTest, StatusTellsPoseBeliefAndCounts) {
     EXPECT_EQ(exit_code({"status"}), 0);
     const std::string table = testing::internal::GetCapturedStdout();
     for (const char* topic :
-         {"state        tracking", "pose         x=", "belief       pose ", "map          revision 0",
+         {"tracking", "pose         x=", "belief       pose ", "map          revision 0",
           "ports        robot ", "drive        off", "recording    ", "saving       "}) {
       EXPECT_NE(table.find(topic), std::string::npos) << topic << '\n' << table;
     }
