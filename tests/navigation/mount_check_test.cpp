@@ -27,7 +27,7 @@ class Drive {
   /// A circle within the room, to the left or right.
   std::optional<OtherMount> circle(double turn_rate_rad_per_s, double for_s) {
     for (double t = 0.0; t < for_s; t += kLookPeriodS) {
-      const Pose2 step{0.3 * kLookPeriodS, 0.0, turn_rate_rad_per_s * kScanPeriodS};
+      const Pose2 step{0.3 * kLookPeriodS, 0.0, turn_rate_rad_per_s * kLookPeriodS};
       map_from_robot_ = map_from_robot_ * step;
       odom_from_robot_ = odom_from_robot_ * Pose2{step.x, 0.0, wheels_turn_more * step.theta};
       look();

@@ -176,9 +176,8 @@ TEST_F(ControlDeskTest, StatusTellsPoseBeliefAndCounts) {
     testing::internal::CaptureStdout();
     EXPECT_EQ(exit_code({"status"}), 0);
     const std::string table = testing::internal::GetCapturedStdout();
-    for (const char* topic :
-         {"tracking", "pose         x=", "belief       pose ", "map          revision 0",
-          "ports        robot ", "drive        off", "recording    ", "saving       "}) {
+    for (const char* topic : {"tracking", "pose         x=", "belief       pose ", "map          revision 0",
+                              "ports        robot ", "drive        off", "recording    ", "saving       "}) {
       EXPECT_NE(table.find(topic), std::string::npos) << topic << '\n' << table;
     }
     testing::internal::CaptureStdout();

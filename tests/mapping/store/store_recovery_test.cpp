@@ -144,7 +144,7 @@ TEST_F(StoreRecovery, KeepsARevisionWithANameThroughWhateverIsThinnedOutLater) {
 TEST_F(StoreRecovery, NoRevisionIsBothComputedAndLost) {
   write(100);
   for (const char* table : {"revision", "revision_copy"}) {
-    for (const int number : {30, 31}) damage(table, number);
+    for (const std::uint32_t number : {30U, 31U}) damage(table, number);
   }
   EXPECT_EQ(recovered().words(),
             "99 revisions recovered, of these computed from their neighbours: 31; lost for good: 30");

@@ -203,7 +203,7 @@ Raster plain(std::size_t width, std::size_t height, std::uint8_t grey) {
 
 TEST(AnimatedPng, HasEveryFrameAndShowsItsFirstToOldPrograms) {
   Raster second = plain(20, 10, 200);
-  for (const std::size_t i : {0, 1, 2}) second.rgb[3 * (4 * 20 + 7) + i] = 9;
+  for (std::size_t i = 0; i < 3; ++i) second.rgb[3 * (4 * 20 + 7) + i] = 9;
   const std::string png =
       picture::animated_png({{plain(20, 10, 200), 100}, {second, 250}, {second, 50}, {plain(20, 10, 0), 2000}});
   EXPECT_EQ(decoded(png), plain(20, 10, 200)) << "its checksums hold, and the first frame is the picture";
