@@ -90,6 +90,7 @@ bool Standstill::is_same(const Scan& scan) const {
   const double deviation_m = std::sqrt(2.0) * scan.range_deviation_m;
   std::size_t compared = 0;
   std::size_t same = 0;
+  std::size_t repeated = 0;
   double chi2 = 0.0;
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const bool has_range = scan.beams[i].kind == BeamKind::kRange;
@@ -100,8 +101,10 @@ bool Standstill::is_same(const Scan& scan) const {
     const double off = static_cast<double>(scan.beams[i].range_m - kept_[i].beam.range_m) / deviation_m;
     if (std::abs(off) > kDeviations) continue;
     ++same;
+    repeated += off == 0.0 ? 1 : 0;
     chi2 += off * off;
   }
+  if (repeated == compared) return false;
   return compared >= kFewestBeams && static_cast<double>(same) >= kLeastShareSame * static_cast<double>(compared) &&
          chi2 < kMostSameChi2 * static_cast<double>(same);
 }

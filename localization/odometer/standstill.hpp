@@ -18,7 +18,8 @@ class Standstill {
   void keep(const Scan& scan, std::span<const RayInRobot> rays);
   void forget() { kept_.clear(); }
   [[nodiscard]] bool has_kept() const { return !kept_.empty(); }
-  /// The scan is the kept one beam by beam, but for noise and a quarter of the beams.
+  /// The scan is the kept one beam by beam, but for noise and a quarter of the beams. Without any noise it is no other
+  /// scan: a laser that repeats itself tells nothing of the robot.
   [[nodiscard]] bool is_same(const Scan& scan) const;
   /// Of a robot that has stood since the kept scan, over one that has moved as its wheels claim or nearly so, nats: how
   /// much better the kept scan's ends then lie on what the scan sees. Below kClearlyMoved the least is not looked for.

@@ -41,7 +41,7 @@ experiments::LoopRun spinning(const std::string& fault, std::uint64_t seed) {
 
 class SpunLearning : public testing::TestWithParam<std::string_view> {};
 
-TEST_P(SpunLearning, IsForgottenWhenScansContradictTheWheels) {
+TEST_P(SpunLearning, IsForgottenWhetherTheyAreStoppedOrCreep) {
   constexpr double kHardlyChanged = 0.15;  // of a deviation: what two more ways of good driving do
   int contradicted = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
@@ -56,11 +56,10 @@ TEST_P(SpunLearning, IsForgottenWhenScansContradictTheWheels) {
     ASSERT_TRUE(daemon.calibration());
     const DriveCalibration before = *daemon.calibration();
     daemon.run(kSpinS + 3.0);
-    if (daemon.last_allowed().stop != navigation::StopReason::kWheelsSpin) continue;
-    ++contradicted;
+    contradicted += daemon.last_allowed().stop == navigation::StopReason::kWheelsSpin ? 1 : 0;
     EXPECT_LT(changed(before, *daemon.calibration()), kHardlyChanged) << "kept, seed " << seed;
   }
-  EXPECT_GE(contradicted, 4);
+  EXPECT_GE(contradicted, 3) << "the others creep: their scans have nothing in common with those before";
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, SpunLearning, testing::Values("wheels-spin", "left-wheel-spins", "right-wheel-spins"),

@@ -60,5 +60,12 @@ TEST_F(StandstillTest, SaysNothingInTheMiddleOfABareCorridor) {
   EXPECT_LT(std::abs(log_odds(kept, again, {0.3, 0.0, 0.0})), 20.0);
 }
 
+TEST_F(StandstillTest, TakesNothingFromALaserThatRepeatsItself) {
+  const Scan first = seen_from(test::room_with_pillar(), {2.0, 3.0, 0.0});
+  Standstill kept;
+  kept.keep(first, motion::deskewed(first, {}));
+  EXPECT_FALSE(kept.is_same(first)) << "to the last digit";
+}
+
 }  // namespace
 }  // namespace deltamap::localization::odometer
