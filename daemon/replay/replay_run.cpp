@@ -135,7 +135,10 @@ void Replay::take(Scan&& scan) {
   const TrackedScan tracked = run_.observe(std::move(scan));
   const double cost_s = run_.cpu().localization_s - before_s;
   report_.latency.add(cost_s);
-  ++report_.scans.localized;
+  if (report_.scans.localized++ == 0 && job_.warn) {
+    const std::string shift = shift_from_given_pose(tracked.estimate.map_from_robot, job_.settings);
+    if (!shift.empty()) job_.warn(shift);
+  }
   warn();
   const LocalizationRow& row = run_.localization().row();
   {

@@ -2,6 +2,7 @@
 #include "daemon/steps/localization_step.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -43,6 +44,19 @@ std::string doubt_of_pose(const OccupancyGrid& map, const Settings& settings) {
   (void)std::snprintf(text, sizeof text, "'localization.initial_pose': %g,%g lies %s of the map: is it right?",
                       settings.initial_pose->x, settings.initial_pose->y,
                       state == CellState::kUnknown ? "in the unknown" : "on an occupied cell");
+  return text;
+}
+
+std::string shift_from_given_pose(const Pose2& first_estimate, const Settings& settings) {
+  if (!settings.initial_pose) return "";
+  const localization::particles::InitialPose given{*settings.initial_pose};
+  const double away_m = distance_between(given.map_from_robot, first_estimate);
+  const double turned_rad = std::abs(turn_between(given.map_from_robot.theta, first_estimate.theta));
+  if (away_m <= given.position_deviation_m && turned_rad <= given.heading_deviation_rad) return "";
+  char text[160];
+  (void)std::snprintf(text, sizeof text,
+                      "the first estimate lies %.2f m and %.0f degrees from 'localization.initial_pose': is it right?",
+                      away_m, degrees(turned_rad));
   return text;
 }
 

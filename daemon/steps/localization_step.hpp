@@ -40,6 +40,9 @@ struct StartMap {
 void require_pose_on(const GridGeometry& map, const Settings& settings);
 /// One line where `localization.initial_pose` lies on a cell of the map on which no robot was seen to fit; else "".
 [[nodiscard]] std::string doubt_of_pose(const OccupancyGrid& map, const Settings& settings);
+/// One line where the first estimate lies farther from `localization.initial_pose` than a pose that a person gives is
+/// taken to be off; else "".
+[[nodiscard]] std::string shift_from_given_pose(const Pose2& first_estimate, const Settings& settings);
 
 class LocalizationStep {
  public:

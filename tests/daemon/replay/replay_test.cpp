@@ -4,7 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "core/files/grid_file.hpp"
 #include "daemon/replay/replay_run.hpp"
@@ -167,11 +171,37 @@ TEST_F(ReplayTest, AStartPoseOffTheMapIsWrongUsage) {
   expect_nothing_left();
 }
 
-TEST_F(ReplayTest, AnInterruptedReplayLeavesTheOldFilesAlone) {
-  fs::create_directory(folder_.path() / "out");
-  (void)folder_.write("out/trajectory.tum", "old");
-  EXPECT_THROW((void)run_replay(job(), [](double) { return false; }), std::runtime_error);
-  EXPECT_EQ(content_of(folder_.path() / "out/trajectory.tum"), "old");
+TEST_F(ReplayTest, SaysHowFarItsFirstEstimateLiesFromThePoseThatWasGiven) {
+  const Pose2 right = test::pose_on_drive(0.0);
+  const auto told_of = [&](const std::optional<Pose2>& given) {
+    ReplayJob given_one = job();
+    given_one.settings.initial_pose = given;
+    std::vector<std::string> lines;
+    given_one.warn = [&](const std::string& line) { lines.push_back(line); };
+    EXPECT_EQ(error_of(given_one), "");
+    std::erase_if(lines, [](const std::string& line) { return !line.starts_with("the first estimate lies "); });
+    return lines;
+  };
+  EXPECT_TRUE(told_of(right).empty());
+  EXPECT_TRUE(told_of(std::nullopt).empty()) << "none was given";
+  for (const Pose2& off : {Pose2{0.5, 0.3, 0.0}, Pose2{0.0, 0.0, radians(-25.0)}}) {
+    const auto lines = told_of(right * off);
+    ASSERT_EQ(lines.size(), 1u) << off.x << " " << off.theta;
+    double away_m = 0.0;
+    double turned_deg = 0.0;
+    ASSERT_EQ(std::sscanf(lines[0].c_str(), "the first estimate lies %lf m and %lf degrees from 'localization.initial_",
+                          &away_m, &turned_deg),
+              2)
+        << lines[0];
+    EXPECT_NEAR(away_m, off.position().norm(), 0.3);
+    EXPECT_NEAR(turned_deg, degrees(std::abs(off.theta)), 15.0);
+  }
+}
+
+fs::create_directory(folder_.path() / "out");
+(void)folder_.write("out/trajectory.tum", "old");
+EXPECT_THROW((void)run_replay(job(), [](double) { return false; }), std::runtime_error);
+EXPECT_EQ(content_of(folder_.path() / "out/trajectory.tum"), "old");
 }
 
 TEST_F(ReplayTest, TheCommandEndsWithTheContractsExitCodes) {
