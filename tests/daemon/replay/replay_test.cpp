@@ -198,10 +198,11 @@ TEST_F(ReplayTest, SaysHowFarItsFirstEstimateLiesFromThePoseThatWasGiven) {
   }
 }
 
-fs::create_directory(folder_.path() / "out");
-(void)folder_.write("out/trajectory.tum", "old");
-EXPECT_THROW((void)run_replay(job(), [](double) { return false; }), std::runtime_error);
-EXPECT_EQ(content_of(folder_.path() / "out/trajectory.tum"), "old");
+TEST_F(ReplayTest, AnInterruptedReplayLeavesTheOldFilesAlone) {
+  fs::create_directory(folder_.path() / "out");
+  (void)folder_.write("out/trajectory.tum", "old");
+  EXPECT_THROW((void)run_replay(job(), [](double) { return false; }), std::runtime_error);
+  EXPECT_EQ(content_of(folder_.path() / "out/trajectory.tum"), "old");
 }
 
 TEST_F(ReplayTest, TheCommandEndsWithTheContractsExitCodes) {

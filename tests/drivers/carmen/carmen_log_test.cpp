@@ -153,6 +153,11 @@ TEST(CarmenLog, SaysPlainlyWhatAForeignFileIs) {
     EXPECT_NE(refusal(folder.write(name, "\x1F\x8B\x08")).find(": is a CARMEN map, not a log"), std::string::npos);
   }
   EXPECT_NE(refusal(folder.write("a.log.gz", "\x1F\x8B\x08")).find("is gzip-compressed"), std::string::npos);
+  EXPECT_NE(refusal(folder.write("drive.2d", "LaserOdometryLog\n#Created by ARNL.\nversion: 2\n"))
+                .find("is a laser log of ARIA (.2d)"),
+            std::string::npos);
+  EXPECT_NE(refusal(folder.write("office.log", "2D-Map\nLineMinPos: 0 0\n")).find("is a map of ARIA"),
+            std::string::npos);
   EXPECT_NE(refusal(folder.write("text.log", "hello\nworld\n")).find("text.log:2: not a CARMEN log"),
             std::string::npos);
 }
