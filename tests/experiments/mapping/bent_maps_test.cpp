@@ -17,7 +17,8 @@ TEST(BentMapsExperiment, TellsBentMapsFromGoodOnes) {
                                            "1", "--minutes", "6", "--jobs", "1", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   std::map<std::string, double> figures;
-  for (const auto& figure : nlohmann::json::parse(run.output)["figures"])
+  const auto summary = nlohmann::json::parse(run.output);
+  for (const auto& figure : summary["figures"])
     figures[figure["name"].get<std::string>()] = figure["value"].get<double>();
   EXPECT_GE(figures.at("bent maps"), 3.0);
   EXPECT_GE(figures.at("of them called false"), 0.75);
