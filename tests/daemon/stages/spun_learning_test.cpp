@@ -44,7 +44,7 @@ class SpunLearning : public testing::TestWithParam<std::string_view> {};
 TEST_P(SpunLearning, IsForgottenWhetherTheyAreStoppedOrCreep) {
   constexpr double kHardlyChanged = 0.15;  // of a deviation: what two more ways of good driving do
   int contradicted = 0;
-  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
     const experiments::LoopRun run = spinning(std::string(GetParam()), seed);
     simulation::Simulation world{run.scenario, {.seed = seed, .start = kSpinTrialStart, .change_every_s = {}}};
     const auto map = std::make_shared<const OccupancyGrid>(simulation::start_map(run.scenario, 0.05));
