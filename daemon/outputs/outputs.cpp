@@ -139,7 +139,7 @@ void require_no_other_maps(const std::filesystem::path& out, const std::filesyst
                            ": --out would replace it, and no run with --out has left it; give another folder");
 }
 
-StagingFolder::StagingFolder(std::filesystem::path target)
+StagingFolder::StagingFolder(const std::filesystem::path& target)
     : target_{std::filesystem::absolute(target).lexically_normal()} {
   if (!target_.has_filename()) target_ = target_.parent_path();
   std::error_code error;

@@ -87,7 +87,7 @@ void require_no_other_maps(const std::filesystem::path& out, const std::filesyst
 class StagingFolder {
  public:
   /// Throws std::runtime_error naming the folder, FileInUse where a daemon writes there; so does commit().
-  explicit StagingFolder(std::filesystem::path target);
+  explicit StagingFolder(const std::filesystem::path& target);
   ~StagingFolder();
   StagingFolder(const StagingFolder&) = delete;
   StagingFolder& operator=(const StagingFolder&) = delete;
