@@ -47,7 +47,7 @@ void MemoryKeeper::Kept::retry(Timestamp now) {
   if (output.attempt(now, [this] { replace_file(file, waiting); })) waiting = {};
 }
 
-control::CommandOutcome MemoryKeeper::save(const SaveOrder& order) {
+control::CommandOutcome MemoryKeeper::save(const SaveOrder& order) const {
   if (places_.pose.empty()) return {order.ticket, false, "no place to save to: 'map.store' is empty"};
   try {
     write_grid(*order.map, places_.saved_map);

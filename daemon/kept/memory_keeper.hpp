@@ -33,7 +33,7 @@ class MemoryKeeper {
   void retry(Timestamp now);
   /// The last attempt.
   void close(Timestamp now);
-  [[nodiscard]] control::CommandOutcome save(const SaveOrder& order);
+  [[nodiscard]] control::CommandOutcome save(const SaveOrder& order) const;
 
  private:
   /// One file; its content waits here while it cannot be written.

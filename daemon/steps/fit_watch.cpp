@@ -81,8 +81,8 @@ LogLine FitWatch::judged_start(std::optional<double> fit_of_all, PoseVerdict ver
 }
 
 LogLine FitWatch::judged_scale(const std::optional<localization::sensor::OtherScale>& scale) {
-  if (!scale || scale->factor == told_factor_) return {};
-  told_factor_ = scale->factor;
+  if (!scale || is_scale_told_) return {};
+  is_scale_told_ = true;
   char text[240];
   (void)std::snprintf(
       text, sizeof text,

@@ -65,7 +65,7 @@ class FitWatch {
   double unfit_s_ = 0.0;   // unbroken
   double unfit_m_ = 0.0;   // driven meanwhile
   bool said_ = false;
-  double told_factor_ = 1.0;  // of the ranges
+  bool is_scale_told_ = false;
 };
 
 }  // namespace deltamap::daemon

@@ -34,12 +34,13 @@ std::string setting_of(navigation::OtherMount mount, const Scan& scan, bool is_u
 }  // namespace
 
 LogLine MountWatch::observe(const Scan& scan) {
+  if (is_told_) return {};  // by a wrong mount the robot loses its way, and what is shown then is worth less
   const auto wheels = wheels_.at(scan.time);
   if (!wheels) return {};
   check_.observe(scan, wheels->odom_from_robot, wheels->epoch);
   const auto shown = check_.shown();
-  if (!shown || shown == told_) return {};
-  told_ = shown;
+  if (!shown) return {};
+  is_told_ = true;
   return {"what the laser sees follows the wheels only if it is mounted otherwise than set: " +
               setting_of(*shown, scan, is_upside_down_) + " fits; look at the laser, then set it",
           true};

@@ -3,8 +3,6 @@
 // name it.
 #pragma once
 
-#include <optional>
-
 #include "core/messages.hpp"
 #include "daemon/telemetry/log_line.hpp"
 #include "localization/motion/odometry_buffer.hpp"
@@ -26,8 +24,8 @@ class MountWatch {
   /// As they report: what the localizer makes of them follows a laser that is mounted wrong.
   localization::motion::OdometryBuffer wheels_;
   navigation::MountCheck check_;
-  std::optional<navigation::OtherMount> told_;
   bool is_upside_down_;
+  bool is_told_ = false;
 };
 
 }  // namespace deltamap::daemon

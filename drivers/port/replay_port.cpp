@@ -11,7 +11,9 @@ std::optional<ReplayedRecord> ReplayPort::next() {
     const double after_s = seconds(record->stamp - *began_);
     if (after_s > window_.to_s) return std::nullopt;
     const bool went_out = !record->bytes.empty() && record->direction == Direction::kOut;
-    if (!went_out) return ReplayedRecord{std::move(*record), after_s >= window_.from_s};
+    // Stamps that step back behind the first one are within a window that leaves nothing out.
+    const bool in_window = window_.from_s <= 0.0 || after_s >= window_.from_s;
+    if (!went_out) return ReplayedRecord{std::move(*record), in_window};
   }
   return std::nullopt;
 }

@@ -59,6 +59,7 @@ TEST(FitWatch, RangesOfAnotherScaleAreToldOnce) {
   EXPECT_EQ(watched.after(5.0, seen),
             "warning: ranges and map differ in scale: with ranges 1.10 times as long the map explains 88 % of the "
             "beams, as they are 72 %; look at the laser's unit, and at 'resolution' in the map's YAML\n");
+  EXPECT_EQ(watched.after(5.0, FitWatch::Seen{0.7, 0.7, localization::sensor::OtherScale{1.25, 0.9, 0.7}}), "");
 }
 
 TEST(FitWatch, ScansWithoutAReturnSayNothingOfTheStartPose) {

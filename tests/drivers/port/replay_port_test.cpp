@@ -37,5 +37,21 @@ TEST(ReplayPort, GivesWhatCameInAndTheNotesAndMarksTheWindow) {
   EXPECT_FALSE(replay.next());
 }
 
+TEST(ReplayPort, LeavesNothingOutWhereTheClockWasSetBackBehindTheBeginning) {
+  const test::TemporaryFolder folder;
+  {
+    ByteLogWriter writer{folder.path() / "a.pcapng", {}};
+    for (const double at_s : {0.0, 1.0, -50.0, -49.0})
+      writer.write(chunk(at_s, Direction::kIn, static_cast<std::uint8_t>(100.0 + at_s)));
+    writer.close();
+  }
+  ReplayPort replay{folder.path() / "a.pcapng", {}};
+  for (const std::vector<std::uint8_t>& bytes : {std::vector<std::uint8_t>{100}, {101}, {50}, {51}}) {
+    const auto next = replay.next();
+    EXPECT_EQ(next.value().record.bytes, bytes);
+    EXPECT_TRUE(next->in_window);
+  }
+}
+
 }  // namespace
 }  // namespace deltamap::drivers::port
