@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "mapping/registration/surface.hpp"
-#include "surveying/quality/passes.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -137,16 +136,20 @@ std::vector<Pose2> bent(Bend bend, const DrivenScans& driven, Random& random) {
   return poses;
 }
 
+std::vector<surveying::quality::PlacedScan> placed_at(const DrivenScans& driven, const std::vector<Pose2>& poses) {
+  std::vector<surveying::quality::PlacedScan> placed;
+  for (std::size_t i = 0; i < poses.size(); ++i) placed.push_back({&driven.scans[i], poses[i], driven.drive[i]});
+  return placed;
+}
+
 double doubled_wall_m(const DrivenScans& driven, const std::vector<Pose2>& poses) {
   using Place = std::pair<int, int>;
   struct Mean {
     double sum_m = 0.0;
     int count = 0;
   };
-  std::vector<surveying::quality::PlacedScan> placed;
-  for (std::size_t i = 0; i < poses.size(); ++i) placed.push_back({&driven.scans[i], poses[i], driven.drive[i]});
   std::map<Place, std::pair<double, double>> drawn;  // least and most, off the truth, of all passes
-  for (const surveying::quality::Pass& pass : surveying::quality::passes_of(placed)) {
+  for (const surveying::quality::Pass& pass : surveying::quality::passes_of(placed_at(driven, poses))) {
     std::map<Place, Mean> off;
     for (std::uint32_t k = pass.first; k <= pass.last; ++k) {
       for (const auto& point :

@@ -8,6 +8,7 @@
 
 #include "core/messages.hpp"
 #include "core/random.hpp"
+#include "surveying/quality/passes.hpp"
 
 namespace deltamap::experiments {
 
@@ -31,6 +32,10 @@ inline constexpr Bend kBends[] = {Bend::kNone,  Bend::kKink,  Bend::kKink,  Bend
 [[nodiscard]] std::string_view name_of(Bend bend);
 
 [[nodiscard]] std::vector<Pose2> bent(Bend bend, const DrivenScans& driven, Random& random);
+
+/// Each scan at its pose of `poses`.
+[[nodiscard]] std::vector<surveying::quality::PlacedScan> placed_at(const DrivenScans& driven,
+                                                                    const std::vector<Pose2>& poses);
 
 /// Wall that two passes of the drive draw apart by more than 0.3 m, square to it, m.
 [[nodiscard]] double doubled_wall_m(const DrivenScans& driven, const std::vector<Pose2>& poses);

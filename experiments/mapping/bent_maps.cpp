@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiments/mapping/bent_drive.hpp"
+#include "experiments/mapping/calm_drives.hpp"
 #include "experiments/mapping/unseen_drive.hpp"
 #include "experiments/registry.hpp"
 #include "localization/motion/deskew.hpp"
@@ -29,32 +30,17 @@ constexpr double kFalseDoubledM = 3.0;
 constexpr double kLeastShare = 0.98;
 
 DrivenScans driven_scans(std::uint64_t seed, double minutes, const localization::LocalizerParams& localizer) {
-  const auto world = simulation::drawn::unseen_world(simulation::drawn::unseen_kind(seed), seed);
-  simulation::VirtualDriveParams params = world.drawn.drive;
-  params.forklift.reset();
-  params.creep.reset();
-  params.changed_at_start.reset();
-  params.changes_at_start.clear();
-  simulation::VirtualDrive drive{world.drawn.scenario, params};
-  Random random{seed};
   localization::motion::OdometryBuffer odometry{localizer.odometry};
   DrivenScans driven;
-  std::optional<Timestamp> began;
   std::uint32_t number = 0;
-  for (;;) {
-    simulation::DriveStep now = drive.next();
-    if (!began) began = now.scan.time;
-    const double passed_s = seconds(now.scan.time - *began);
-    if (passed_s > 60.0 * minutes) return driven;
+  const auto take = [&](const simulation::DriveStep& now) {
     for (const Odometry& one : now.odometry) odometry.add(one);
-    if (number == 0 && passed_s > 30.0 * minutes) {
-      number = 1;
-      drive.kidnap(drive.place_anywhere(random));
-      continue;
-    }
+  };
+  const auto keep = [&](simulation::DriveStep&& now) {
+    take(now);
     if (!driven.truth.empty() && driven.drive.back() == number) {
       const Pose2 moved = motion_between(driven.truth.back(), now.map_from_robot);
-      if (moved.position().norm() < kKeptM && std::abs(moved.theta) < kKeptRad) continue;
+      if (moved.position().norm() < kKeptM && std::abs(moved.theta) < kKeptRad) return;
     }
     TrackedScan tracked;
     tracked.rays = localization::motion::deskewed(now.scan, odometry.velocity_at(now.scan.time));
@@ -62,19 +48,20 @@ DrivenScans driven_scans(std::uint64_t seed, double minutes, const localization:
     driven.scans.push_back(std::move(tracked));
     driven.drive.push_back(number);
     driven.truth.push_back(now.map_from_robot);
-  }
+  };
+  drive_calmly(seed, minutes, {.step = keep, .begin_second = [&](simulation::DriveStep&& now) {
+                                 take(now);
+                                 number = 1;
+                               }});
+  return driven;
 }
 
 surveying::quality::MapQuality quality_of(const DrivenScans& driven, const std::vector<Pose2>& poses) {
   std::vector<const TrackedScan*> scans;
-  std::vector<surveying::quality::PlacedScan> placed;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    scans.push_back(&driven.scans[i]);
-    placed.push_back({&driven.scans[i], poses[i], driven.drive[i]});
-  }
+  for (const TrackedScan& scan : driven.scans) scans.push_back(&scan);
   return surveying::quality::map_quality(mapping::alignment::local_map(scans, poses, {0, 0, kResolutionM, {0.0, 0.0}},
                                                                        {.longest_m = 25.0, .least_hits = 2}),
-                                         placed);
+                                         placed_at(driven, poses));
 }
 
 /// A scale error is false however little of it two passes happen to see.

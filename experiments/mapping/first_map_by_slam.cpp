@@ -10,6 +10,7 @@
 
 #include "daemon/steps/survey_step.hpp"
 #include "daemon/telemetry/cpu_timer.hpp"
+#include "experiments/mapping/calm_drives.hpp"
 #include "experiments/mapping/unseen_drive.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/seed_summary.hpp"
@@ -58,40 +59,18 @@ struct Surveyed {
   double cpu_s = 0.0;
 };
 
-/// As in `unseen`, but nothing is moved.
-simulation::VirtualDriveParams calm(simulation::VirtualDriveParams drive) {
-  drive.forklift.reset();
-  drive.creep.reset();
-  drive.changed_at_start.reset();
-  drive.changes_at_start.clear();
-  return drive;
-}
-
 void survey_world(std::uint64_t seed, double minutes, Surveyed& surveyed) {
-  const simulation::drawn::UnseenWorld world =
-      simulation::drawn::unseen_world(simulation::drawn::unseen_kind(seed), seed);
-  simulation::VirtualDrive drive{world.drawn.scenario, calm(world.drawn.drive)};
-  Random random{seed};
-  std::optional<Timestamp> began;
-  bool is_second = false;
   std::map<Timestamp, Pose2> true_poses;
   surveyed.step.begin_drive();
-  for (;;) {
-    simulation::DriveStep now = drive.next();
-    if (!began) began = now.scan.time;
-    const double passed_s = seconds(now.scan.time - *began);
-    if (passed_s > 60.0 * minutes) break;
-    const daemon::CpuTimer timer{surveyed.cpu_s};
-    if (!is_second && passed_s > 30.0 * minutes) {
-      is_second = true;
-      drive.kidnap(drive.place_anywhere(random));
-      surveyed.step.begin_drive();
-    } else {
-      for (const Odometry& odometry : now.odometry) surveyed.step.observe(odometry);
-      true_poses.emplace(now.scan.time, now.map_from_robot);
-      surveyed.step.observe(std::move(now.scan));
-    }
-  }
+  drive_calmly(seed, minutes,
+               {.step =
+                    [&](simulation::DriveStep&& now) {
+                      const daemon::CpuTimer timer{surveyed.cpu_s};
+                      for (const Odometry& odometry : now.odometry) surveyed.step.observe(odometry);
+                      true_poses.emplace(now.scan.time, now.map_from_robot);
+                      surveyed.step.observe(std::move(now.scan));
+                    },
+                .begin_second = [&](simulation::DriveStep&&) { surveyed.step.begin_drive(); }});
   const daemon::CpuTimer timer{surveyed.cpu_s};
   if (!surveyed.step.finish()) throw std::runtime_error("first-map: the pose graph of a seed does not settle");
   for (const surveying::slam::Keyframe& keyframe : surveyed.step.slam().survey().keyframes) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,22 +13,13 @@
 namespace deltamap::experiments {
 namespace {
 
-/// "drive: figure, of which runs" to its value.
 using Figures = std::map<std::string, double>;
 
 Figures figures_of(const std::string& name, const std::string& only, double minutes, int seed = 1) {
   const test::TemporaryFolder folder;
-  const test::ToolRun answer =
+  return test::figures_of(
       test::run_experiment(name, folder.path().string(), std::to_string(minutes),
-                           {"--only", only, "--seed", std::to_string(seed), "--jobs", "1", "--json"});
-  EXPECT_EQ(answer.exit_code, 0) << answer.errors;
-  Figures figures;
-  if (answer.exit_code != 0) return figures;
-  const auto summary = nlohmann::json::parse(answer.output);
-  for (const auto& figure : summary["figures"]) {
-    if (figure["value"].is_number()) figures.emplace(figure["name"].get<std::string>(), figure["value"].get<double>());
-  }
-  return figures;
+                           {"--only", only, "--seed", std::to_string(seed), "--jobs", "1", "--json"}));
 }
 
 void expect_followed_changes(const Figures& of) {

@@ -2,9 +2,6 @@
 // `deltamap-lab bent-maps`: what is called false and good of one seed's drives.
 #include <gtest/gtest.h>
 
-#include <map>
-#include <nlohmann/json.hpp>
-
 #include "tests/support/files/lab_run.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 
@@ -13,13 +10,8 @@ namespace {
 
 TEST(BentMapsExperiment, TellsBentMapsFromGoodOnes) {
   const test::TemporaryFolder folder;
-  const test::ToolRun run = test::run_lab({"bent-maps", "--out", folder.path().string(), "--seed", "605", "--repeats",
-                                           "1", "--minutes", "6", "--jobs", "1", "--json"});
-  ASSERT_EQ(run.exit_code, 0) << run.errors;
-  std::map<std::string, double> figures;
-  const auto summary = nlohmann::json::parse(run.output);
-  for (const auto& figure : summary["figures"])
-    figures[figure["name"].get<std::string>()] = figure["value"].get<double>();
+  const auto figures = test::figures_of(test::run_lab({"bent-maps", "--out", folder.path().string(), "--seed", "605",
+                                                       "--repeats", "1", "--minutes", "6", "--jobs", "1", "--json"}));
   EXPECT_GE(figures.at("bent maps"), 3.0);
   EXPECT_GE(figures.at("of them called false"), 0.75);
   EXPECT_GE(figures.at("good maps"), 1.0);
