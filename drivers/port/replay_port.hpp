@@ -39,7 +39,8 @@ class ReplayPort {
  private:
   ByteLogReader reader_;
   ReplayWindow window_;
-  std::optional<Timestamp> began_;
+  std::optional<Timestamp> began_;  // on the clock as it is set now
+  Timestamp last_{};
 };
 
 }  // namespace deltamap::drivers::port

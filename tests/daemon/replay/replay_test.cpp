@@ -32,10 +32,14 @@ using test::content_of;
 class ReplayTest : public testing::Test {
  protected:
   ReplayTest() {
-    test::write_drive(folder_.path() / "drive.log", 3.0);
-    (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
+    record_drive(3.0);
     write_grid(test::small_room(false), folder_.path() / "room.yaml");
     (void)folder_.write("config.yaml", "seed: 3\n");
+  }
+
+  void record_drive(double for_s) const {
+    test::write_drive(folder_.path() / "drive.log", for_s);
+    (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
   }
 
   [[nodiscard]] ReplayJob job() const {
@@ -89,8 +93,7 @@ TEST_F(ReplayTest, WritesEveryFileOfTheContract) {
 }
 
 TEST_F(ReplayTest, SaysWhatALiveRunWouldSayOfPoseAndMount) {
-  test::write_drive(folder_.path() / "drive.log", 24.0);
-  (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
+  record_drive(24.0);
   std::string said;
   ReplayJob wrong = job();
   wrong.warn = [&](const std::string& line) { said += line + "\n"; };
@@ -118,8 +121,7 @@ TEST_F(ReplayTest, TheReportNamesWhatReallyRan) {
 }
 
 TEST_F(ReplayTest, FindsTheSameChangesHoweverMuchUnknownSpaceLiesAroundTheMap) {
-  test::write_drive(folder_.path() / "drive.log", 24.0);
-  (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
+  record_drive(24.0);
   EXPECT_EQ(error_of(job()), "");
   const OccupancyGrid changed = read_grid(folder_.path() / "out/map.yaml");
   const std::string trajectory = content_of(folder_.path() / "out/trajectory.tum");

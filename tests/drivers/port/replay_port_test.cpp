@@ -53,5 +53,18 @@ TEST(ReplayPort, LeavesNothingOutWhereTheClockWasSetBackBehindTheBeginning) {
   }
 }
 
+TEST(ReplayPort, CountsOnOverAClockThatWasSetBack) {
+  const test::TemporaryFolder folder;
+  {
+    ByteLogWriter writer{folder.path() / "a.pcapng", {}};
+    std::uint8_t byte = 0;
+    for (const double at_s : {0.0, 2.0, -50.0, -48.5, -47.0}) writer.write(chunk(at_s, Direction::kIn, byte++));
+    writer.close();
+  }
+  ReplayPort replay{folder.path() / "a.pcapng", {.from_s = 1.0, .to_s = 4.0}};
+  for (const bool in_window : {false, true, true, true}) EXPECT_EQ(replay.next().value().in_window, in_window);
+  EXPECT_FALSE(replay.next()) << "5 s after the first";
+}
+
 }  // namespace
 }  // namespace deltamap::drivers::port
