@@ -30,15 +30,19 @@ std::vector<const CLI::App*> commands_of(const CLI::App& parent) {
   return parent.get_subcommands([](const CLI::App*) { return true; });
 }
 
+std::vector<std::string> names_of(const std::vector<const CLI::App*>& commands) {
+  std::vector<std::string> names;
+  for (const CLI::App* one : commands) names.push_back(one->get_name());
+  return names;
+}
+
 /// Of the commands here, else of those one level below: "ctl status" for "stauts".
 std::optional<std::string> nearest_command(const CLI::App& parent, const std::string& word) {
-  std::vector<std::string> names;
-  for (const CLI::App* one : commands_of(parent)) names.push_back(one->get_name());
-  if (const auto nearest = daemon::nearest_of(names, word)) return nearest;
-  for (const CLI::App* one : commands_of(parent)) {
-    std::vector<std::string> below;
-    for (const CLI::App* inner : commands_of(*one)) below.push_back(inner->get_name());
-    if (const auto nearest = daemon::nearest_of(below, word)) return one->get_name() + " " + *nearest;
+  const std::vector<const CLI::App*> here = commands_of(parent);
+  if (const auto nearest = daemon::nearest_of(names_of(here), word)) return nearest;
+  for (const CLI::App* one : here) {
+    const auto nearest = daemon::nearest_of(names_of(commands_of(*one)), word);
+    if (nearest) return one->get_name() + " " + *nearest;
   }
   return std::nullopt;
 }

@@ -143,8 +143,8 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["forbidden_by"] = navigation::name_of(forbids);
   json["told"] = {{"speed_m_per_s", t.told_speed_m_per_s.value()},
                   {"turn_rate_rad_per_s", t.told_turn_rate_rad_per_s.value()}};
-  const bool tells_battery = t.robot_up.value() && t.battery_v.value() > 0.0;
-  json["battery_v"] = tells_battery ? Json(t.battery_v.value()) : Json(nullptr);
+  const auto battery_v = told_battery_v(t);
+  json["battery_v"] = battery_v ? Json(*battery_v) : Json(nullptr);
   json["latency_ms"] = t.localized.value() > 0 ? Json(t.latency_s.value() * 1e3) : Json(nullptr);
   json["since_start_s"] = since_start_s;
   json["log_level"] = name_of(static_cast<LogLevel>(t.log_level.value()));

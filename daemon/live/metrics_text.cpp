@@ -97,8 +97,7 @@ void add_machine(Text& text, const Telemetry& t, double since_start_s) {
   text.head("port_up", "1 while the device on the port answers.", "gauge");
   text.row("port_up", label("port", "robot"), t.robot_up.value() ? 1.0 : 0.0);
   text.row("port_up", label("port", "laser"), t.laser_up.value() ? 1.0 : 0.0);
-  if (t.robot_up.value() && t.battery_v.value() > 0.0)
-    text.gauge("battery_volts", "Of the robot.", t.battery_v.value());
+  if (const auto battery_v = told_battery_v(t)) text.gauge("battery_volts", "Of the robot.", *battery_v);
   text.gauge("resident_bytes", "Resident memory of the daemon.", static_cast<double>(resident_bytes()));
   text.counter("cpu_seconds_total", "Processor time of the daemon.", process_cpu_s());
   text.gauge("uptime_seconds", "Since the daemon's start.", since_start_s);

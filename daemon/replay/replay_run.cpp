@@ -52,7 +52,7 @@ class Replay {
  private:
   void take(const Odometry& odometry, std::uint32_t number);
   void take(Scan&& scan);
-  void warn() const;
+  void warn(const Estimate& estimate) const;
   void obey_commands_before(const Scan& scan);
   void look_for_changes(const TrackedScan& tracked);
   [[nodiscard]] bool reaches_map(const ScanSet& set, std::uint32_t scan);
@@ -135,11 +135,8 @@ void Replay::take(Scan&& scan) {
   const TrackedScan tracked = run_.observe(std::move(scan));
   const double cost_s = run_.cpu().localization_s - before_s;
   report_.latency.add(cost_s);
-  if (report_.scans.localized++ == 0 && job_.warn) {
-    const std::string shift = shift_from_given_pose(tracked.estimate.map_from_robot, job_.settings);
-    if (!shift.empty()) job_.warn(shift);
-  }
-  warn();
+  ++report_.scans.localized;
+  if (job_.warn) warn(tracked.estimate);
   const LocalizationRow& row = run_.localization().row();
   {
     const CpuTimer timer{recording_cpu_s_};
@@ -151,9 +148,12 @@ void Replay::take(Scan&& scan) {
 }
 
 /// Of what a live run would say of the newest scan, what needs a person.
-void Replay::warn() const {
+void Replay::warn(const Estimate& estimate) const {
+  const bool is_first = report_.scans.localized == 1;
+  const std::string shift = is_first ? shift_from_given_pose(estimate.map_from_robot, job_.settings) : "";
+  if (!shift.empty()) job_.warn(shift);
   for (const LogLine& line : run_.localization().lines()) {
-    if (!line.is_warning || !job_.warn) continue;
+    if (!line.is_warning) continue;
     const auto at_s = std::lround(run_.localization().covered_s());
     job_.warn("after " + std::to_string(at_s) + " s: " + line.text);
   }

@@ -28,8 +28,8 @@ class FitWatch {
   explicit FitWatch(bool is_given) : given_{is_given ? std::optional{Given{}} : std::nullopt} {}
 
   struct Seen {
-    std::optional<double> fit;                                ///< as LocalizationStep::fit()
-    std::optional<double> fit_of_all;                         ///< as LocalizationStep::fit_of_all()
+    std::optional<double> fit;                                ///< as Localizer::fit()
+    std::optional<double> fit_of_all;                         ///< as Localizer::fit_of_all()
     std::optional<localization::sensor::OtherScale> scale{};  ///< as Localizer::range_scale()
   };
   /// After each scan: a line for the log, of no text where there is nothing to say.

@@ -82,7 +82,7 @@ TrackedScan LocalizationStep::observe(Scan scan) {
   lines_.clear();
   tell(mount_watch_.observe(scan));
   TrackedScan tracked = localizer_.observe(std::move(scan));
-  tell(fit_watch_.observe(tracked, {fit(), fit_of_all(), localizer_.range_scale()}));
+  tell(fit_watch_.observe(tracked, {fit(), localizer_.fit_of_all(), localizer_.range_scale()}));
   learn_or_forget(tracked);
   last_map_from_robot_ = tracked.estimate.map_from_robot;
   last_odom_from_robot_ = localizer_.odom_from_robot(tracked.scan.time);

@@ -64,8 +64,6 @@ class LocalizationStep {
   [[nodiscard]] const LocalizationRow& row() const { return row_; }
   /// As Localizer::fit().
   [[nodiscard]] std::optional<double> fit() const { return localizer_.fit(); }
-  /// As Localizer::fit_of_all().
-  [[nodiscard]] std::optional<double> fit_of_all() const { return localizer_.fit_of_all(); }
   /// What a person should know of the newest scan's pose or of the laser's mount: lines for the log, seldom any.
   [[nodiscard]] const std::vector<LogLine>& lines() const { return lines_; }
   /// As FitWatch::start_fits().

@@ -123,6 +123,11 @@ mapping::gate::GateTimes GateGauges::times() const {
   return times;
 }
 
+std::optional<double> told_battery_v(const Telemetry& telemetry) {
+  const double battery_v = telemetry.battery_v.value();
+  return telemetry.robot_up.value() && battery_v > 0.0 ? std::optional{battery_v} : std::nullopt;
+}
+
 ScanCounts counts_of(const Telemetry& t) {
   return {.decoded = t.scans.value(),
           .localized = t.localized.value(),

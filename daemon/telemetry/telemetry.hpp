@@ -118,6 +118,9 @@ struct Telemetry {
 /// What the write gate is like; nothing: no scan votes, since mapping is off or paused.
 [[nodiscard]] std::optional<mapping::gate::GateReason> gate_now(const Telemetry& telemetry, bool mapping_enabled);
 
+/// Nothing while the robot is down, or has told none.
+[[nodiscard]] std::optional<double> told_battery_v(const Telemetry& telemetry);
+
 [[nodiscard]] ScanCounts counts_of(const Telemetry& telemetry);
 
 /// One line for a person: devices, state, verdict and pose, N_eff, w_avg, revision, Δ-phase, drops, latency; before the

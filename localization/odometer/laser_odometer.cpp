@@ -138,7 +138,7 @@ LaserMotion LaserOdometer::observe(const Scan& scan, std::span<const RayInRobot>
   const Step step = step_to(scan.time, wheels);
   if (stands_still(scan, rays, step)) {
     stand(answer, step);
-    const bool is_clear = anchor_.odds + standing_odds_ > kStands && anchor_.claimed.position().norm() > 0.5 * kAnchorM;
+    const bool is_clear = odds_of_standing() > kStands && anchor_.claimed.position().norm() > 0.5 * kAnchorM;
     if (is_clear) go_on_standing(scan, rays);
     return answer;
   }
@@ -198,7 +198,7 @@ bool LaserOdometer::stands_still(const Scan& scan, std::span<const RayInRobot> r
   }
   // Once it is clear, it stands as long as nothing speaks for a motion; without any more sign the wheels rule again.
   stands_ = standing_odds_ > Standstill::kClearlyMoved && is_claimed &&
-            (anchor_.odds + standing_odds_ > kStands || (stands_ && claimed_m < kAnchorM));
+            (odds_of_standing() > kStands || (stands_ && claimed_m < kAnchorM));
   stood_m_ = stands_ && step.way_m() > kTurningM ? stood_m_ + step.way_m() : 0.0;
   return stands_;
 }
@@ -227,7 +227,7 @@ void LaserOdometer::anchor(const Scan& scan, std::span<const RayInRobot> rays) {
 void LaserOdometer::go_on_standing(const Scan& scan, std::span<const RayInRobot> rays) {
   standstill_.keep(scan, rays);
   anchor_.claimed = {};
-  anchor_.odds = std::min(anchor_.odds + standing_odds_, kMostTold);
+  anchor_.odds = std::min(odds_of_standing(), kMostTold);
 }
 
 ScanFit LaserOdometer::fit(std::span<const LinePoint> points, const Pose2& predicted, const Step& step) const {

@@ -82,6 +82,8 @@ class LaserOdometer {
 
   [[nodiscard]] Step step_to(Timestamp time, const std::optional<WheelsAt>& wheels);
   [[nodiscard]] bool stands_still(const Scan& scan, std::span<const RayInRobot> rays, const Step& step);
+  /// Of a robot that has stood since the anchor, nats, over all kept scans.
+  [[nodiscard]] double odds_of_standing() const { return anchor_.odds + standing_odds_; }
   void stand(LaserMotion& answer, const Step& step);
   void anchor(const Scan& scan, std::span<const RayInRobot> rays);
   void go_on_standing(const Scan& scan, std::span<const RayInRobot> rays);

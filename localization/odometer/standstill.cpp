@@ -104,8 +104,8 @@ bool Standstill::is_same(const Scan& scan) const {
     repeated += off == 0.0 ? 1 : 0;
     chi2 += off * off;
   }
-  if (repeated == compared) return false;
-  return compared >= kFewestBeams && static_cast<double>(same) >= kLeastShareSame * static_cast<double>(compared) &&
+  return compared >= kFewestBeams && repeated < compared &&
+         static_cast<double>(same) >= kLeastShareSame * static_cast<double>(compared) &&
          chi2 < kMostSameChi2 * static_cast<double>(same);
 }
 

@@ -11,10 +11,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double number(const Json& json, const char* path) {
+bool has_number(const Json& json, const char* path) {
   const auto found = Json::json_pointer(path);
-  return json.contains(found) && json[found].is_number() ? json[found].get<double>() : 0.0;
+  return json.contains(found) && json[found].is_number();
 }
+
+double number(const Json& json, const char* path) {
+  return has_number(json, path) ? json[Json::json_pointer(path)].get<double>() : 0.0;
+}
+
+bool has_object(const Json& json, const char* name) { return json.contains(name) && json[name].is_object(); }
 
 std::string word(const Json& json, const char* path) {
   const auto found = Json::json_pointer(path);
@@ -31,7 +37,7 @@ std::string line(const char* name, const char* format, const Values&... values) 
 }
 
 /// Nothing that only a scan tells is known before the first one.
-bool has_pose(const Json& s) { return s.contains("pose") && s["pose"].is_object(); }
+bool has_pose(const Json& s) { return has_object(s, "pose"); }
 
 std::string pose_line(const Json& s) {
   if (!has_pose(s)) return line("pose", "%s", "unknown");
@@ -42,7 +48,7 @@ std::string pose_line(const Json& s) {
 }
 
 std::string belief_lines(const Json& s) {
-  if (!s.contains("belief") || !s["belief"].is_object()) return line("belief", "%s", "none");
+  if (!has_object(s, "belief")) return line("belief", "%s", "none");
   std::string text = line("belief", "pose %s (right %.2f), map wrong here %.2f", word(s, "/belief/verdict").c_str(),
                           number(s, "/belief/pose_right"), number(s, "/belief/map_wrong"));
   text += line("", "beams that fit: %.0f of %.0f on what is stable, %.0f of %.0f elsewhere",
@@ -56,10 +62,10 @@ std::string belief_lines(const Json& s) {
 
 std::string map_line(const Json& s) {
   const double newest = number(s, "/newest_revision");
-  const bool is_used = s.contains("revision") && s["revision"].is_number();
   return line("map", "revision %.0f (newest %.0f), %.0f refused, mapping %s, phase %.0f%s",
-              is_used ? number(s, "/revision") : newest, newest, number(s, "/refused"), word(s, "/mapping").c_str(),
-              number(s, "/phase/number"), s.value("/phase/open"_json_pointer, false) ? " open" : "");
+              has_number(s, "/revision") ? number(s, "/revision") : newest, newest, number(s, "/refused"),
+              word(s, "/mapping").c_str(), number(s, "/phase/number"),
+              s.value("/phase/open"_json_pointer, false) ? " open" : "");
 }
 
 /// How long nothing could be written, and why.
@@ -80,13 +86,13 @@ std::string gate_line(const Json& s) {
 
 std::string scans_line(const Json& s) {
   double drops = 0.0;
-  if (s.contains("drops") && s["drops"].is_object()) {
+  if (has_object(s, "drops")) {
     for (const auto& count : s["drops"]) drops += count.is_number() ? count.get<double>() : 0.0;
   }
   std::string latency = "unknown";
-  if (s.contains("latency_ms") && s["latency_ms"].is_number()) {
+  if (has_number(s, "/latency_ms")) {
     char text[32];
-    (void)std::snprintf(text, sizeof text, "%.1f ms", s["latency_ms"].get<double>());
+    (void)std::snprintf(text, sizeof text, "%.1f ms", number(s, "/latency_ms"));
     latency = text;
   }
   return line("scans", "%.0f, %.0f localized, %.0f messages dropped, latency %s", number(s, "/scans"),
@@ -133,9 +139,8 @@ std::string outputs_lines(const Json& s) {
 }
 
 std::string filter_line(const Json& s) {
-  if (!s.contains("particles") || !s["particles"].is_number()) return line("filter", "%s", "no scan yet");
-  const bool is_told = s.contains("/fit"_json_pointer) && s["fit"].is_number();
-  if (!is_told) {
+  if (!has_number(s, "/particles")) return line("filter", "%s", "no scan yet");
+  if (!has_number(s, "/fit")) {
     return line("filter", "%.0f particles, n_eff %.0f; no beam tells how well the scan fits", number(s, "/particles"),
                 number(s, "/n_eff"));
   }
@@ -149,7 +154,7 @@ std::string ports_lines(const Json& s) {
   if (number(s, "/battery_v") > 0.0) (void)std::snprintf(battery, sizeof battery, " (%.1f V)", number(s, "/battery_v"));
   std::string text =
       line("ports", "robot %s%s, laser %s", word(s, "/ports/robot").c_str(), battery, word(s, "/ports/laser").c_str());
-  if (!s.contains("port_troubles") || !s["port_troubles"].is_object()) return text;
+  if (!has_object(s, "port_troubles")) return text;
   for (const auto& [port, why] : s["port_troubles"].items()) {
     if (why.is_string() && !why.get<std::string>().empty())
       text += std::string(13, ' ') + port + ": " + why.get<std::string>() + "\n";

@@ -10,8 +10,8 @@
 #include "experiments/closed_loop/virtual_daemon.hpp"
 #include "simulation/simulation.hpp"
 #include "tests/support/files/figure.hpp"
-#include "tests/support/files/source_tree.hpp"
 #include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/worlds/quiet_room.hpp"
 
 namespace deltamap {
 namespace {
@@ -22,12 +22,6 @@ using Daemon = experiments::VirtualDaemon;
 
 constexpr Timestamp kTrialStart = timestamp_from_ns(1'700'000'000'000'000'000);
 constexpr std::uint64_t kShards = 8;
-
-simulation::Scenario room() {
-  auto scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
-  scenario.forklift.reset();
-  return scenario;
-}
 
 Daemon::Params params(const std::filesystem::path& folder, std::uint64_t seed) {
   Daemon::Params params;
@@ -44,7 +38,7 @@ Daemon::Params params(const std::filesystem::path& folder, std::uint64_t seed) {
 struct TrialDrive {
   explicit TrialDrive(std::uint64_t seed)
       : random{seed},
-        simulation{room(), {seed, kTrialStart, std::nullopt}},
+        simulation{test::quiet_room(), {seed, kTrialStart, std::nullopt}},
         daemon{simulation, params(folder.path(), seed)} {
     daemon.start();
     daemon.run(6.0 + random.uniform());
@@ -285,7 +279,7 @@ TEST_P(RandomKills, LeaveTheRobotStandingBeforeItTouchesAnythingAndItIsSoonBack)
       last = pose;
     };
     drive.daemon.run(5.0, follow);
-    const double body_m = room().robot.body.radius_m;
+    const double body_m = test::quiet_room().robot.body.radius_m;
     touched += nearest_m(drive.simulation) < body_m + 0.005 ? 1 : 0;
     longest_m = std::max(longest_m, travel_m);
     moving += travel_m > 0.05 ? 1 : 0;

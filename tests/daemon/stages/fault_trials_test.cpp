@@ -8,15 +8,10 @@
 
 #include "experiments/closed_loop/fault_trial.hpp"
 #include "tests/support/files/source_tree.hpp"
+#include "tests/support/worlds/quiet_room.hpp"
 
 namespace deltamap {
 namespace {
-
-simulation::Scenario quiet_room() {
-  auto scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
-  scenario.forklift.reset();
-  return scenario;
-}
 
 class FaultTrials : public testing::TestWithParam<std::string_view> {};
 
@@ -24,7 +19,7 @@ TEST_P(FaultTrials, TouchNothing) {
   for (const double before_s : {0.0, 10.0}) {
     const experiments::FaultTrial trial{
         .fault = std::string(GetParam()), .before_s = before_s, .for_s = 15.0, .seed = 1};
-    const experiments::LoopOutcome outcome = outcome_of(run_of(trial, quiet_room(), {}));
+    const experiments::LoopOutcome outcome = outcome_of(run_of(trial, test::quiet_room(), {}));
     EXPECT_EQ(outcome.collisions, 0) << "at " << outcome.fastest_collision_m_per_s << " m/s";
     EXPECT_TRUE(before_s == 0.0 || trial.fault.starts_with("mount") || outcome.driven_before_m > 0.5)
         << "it must have been driving: " << outcome.driven_before_m;
@@ -44,7 +39,7 @@ TEST(FaultTrials, OfALaserThatWasTurnedOnItsMountBeforeTheStartEndBeforeItHasUse
     for (std::uint64_t seed = 1; seed <= 7; ++seed) {
       const experiments::FaultTrial trial{.fault = std::string(fault), .before_s = 0.0, .for_s = 60.0, .seed = seed};
       for (const bool has_pilot_gone_wild : {false, true}) {  // by a pose that may fit the turned scans, or by hand
-        experiments::LoopRun run = run_of(trial, quiet_room(), {});
+        experiments::LoopRun run = run_of(trial, test::quiet_room(), {});
         run.has_pilot_gone_wild = has_pilot_gone_wild;
         const experiments::LoopOutcome outcome = outcome_of(run);
         EXPECT_EQ(outcome.collisions, 0) << fault << " seed " << seed;
@@ -93,7 +88,7 @@ TEST(FaultTrials, TouchNothingWithARobotThatRunsAwayWhateverElseIsWrong) {
                                          {"turns-at=15", "", 0.0}}};
   for (const Runaway& runaway : runaways) {
     const experiments::FaultTrial trial{.fault = runaway.fault, .before_s = 10.0, .for_s = 40.0, .seed = 1};
-    experiments::LoopRun run = run_of(trial, quiet_room(), {});
+    experiments::LoopRun run = run_of(trial, test::quiet_room(), {});
     const double begins_s = run.scenario.faults.front().after_s + runaway.after_s;
     if (!runaway.also.empty()) run.scenario.faults.push_back(simulation::fault_order(runaway.also, begins_s));
     const experiments::LoopOutcome outcome = outcome_of(run);
@@ -117,7 +112,7 @@ TEST(FaultTrials, SayWhyTheRobotStandsAndThatNobodyMustDriveByItsPose) {
       {"mount-turned=180", navigation::StopReason::kWayUncovered}};
   for (const auto& [fault, reason] : expected) {
     const experiments::FaultTrial trial{.fault = fault, .before_s = 10.0, .for_s = 25.0, .seed = 1};
-    const experiments::LoopOutcome outcome = outcome_of(run_of(trial, quiet_room(), {}));
+    const experiments::LoopOutcome outcome = outcome_of(run_of(trial, test::quiet_room(), {}));
     EXPECT_EQ(outcome.reason, reason) << fault << ": " << name_of(outcome.reason);
     EXPECT_EQ(outcome.may_drive_at_end_share, 0.0) << fault;
   }
@@ -127,7 +122,7 @@ TEST(FaultTrials, SayWhyTheRobotStandsAndThatNobodyMustDriveByItsPose) {
 TEST(FaultTrials, OfOneRangeForAllBeamsStopAPersonsHandAtOnce) {
   for (std::uint64_t seed = 330; seed < 350; ++seed) {
     experiments::LoopRun run;
-    run.scenario = quiet_room();
+    run.scenario = test::quiet_room();
     run.scenario.laser.max_range_m = 8.0;
     run.before_s = 12.97;
     run.scenario.faults.push_back(simulation::fault_order("laser-constant=5", experiments::kConnectS + run.before_s));
@@ -162,7 +157,7 @@ TEST(FaultTrials, AreForgottenWhenTheLaserSeesRightlyAgain) {
 
 TEST(FaultTrials, StandAtAGivenPoseThatNoScanHasSupported) {
   experiments::LoopRun run;
-  run.scenario = quiet_room();
+  run.scenario = test::quiet_room();
   run.settings = experiments::fitting(run.scenario);
   run.settings.initial_pose = Pose2{10.6, 3.0, 0.0};  // behind the wall: the map knows nothing of where the beams end
   run.for_s = 15.0;
@@ -174,7 +169,7 @@ TEST(FaultTrials, StandAtAGivenPoseThatNoScanHasSupported) {
 
 TEST(FaultTrials, DriveOnWhereNothingIsWrong) {
   experiments::LoopRun run;
-  run.scenario = quiet_room();
+  run.scenario = test::quiet_room();
   run.settings = experiments::fitting(run.scenario);
   run.for_s = 120.0;
   const experiments::LoopOutcome outcome = outcome_of(run);

@@ -8,7 +8,7 @@
 
 #include "core/geometry/angle.hpp"
 #include "experiments/closed_loop/loop_run.hpp"
-#include "tests/support/files/source_tree.hpp"
+#include "tests/support/worlds/quiet_room.hpp"
 
 namespace deltamap {
 namespace {
@@ -29,8 +29,7 @@ struct Laser {
 /// The virtual laser, and settings that say what it is.
 experiments::LoopRun behind(const Laser& laser) {
   experiments::LoopRun run;
-  run.scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
-  run.scenario.forklift.reset();
+  run.scenario = test::quiet_room();
   simulation::LaserSetup& setup = run.scenario.laser;
   setup.field_deg = laser.field_deg;
   setup.step_deg = laser.step_deg;

@@ -9,7 +9,7 @@
 #include "experiments/closed_loop/loop_run.hpp"
 #include "experiments/closed_loop/virtual_daemon.hpp"
 #include "simulation/scenario/start_map.hpp"
-#include "tests/support/files/source_tree.hpp"
+#include "tests/support/worlds/quiet_room.hpp"
 
 namespace deltamap {
 namespace {
@@ -31,8 +31,7 @@ double changed(const DriveCalibration& from, const DriveCalibration& to) {
 
 experiments::LoopRun spinning(const std::string& fault, std::uint64_t seed) {
   experiments::LoopRun run;
-  run.scenario = simulation::read_scenario(test::source_path("config/scenarios/room.yaml"));
-  run.scenario.forklift.reset();
+  run.scenario = test::quiet_room();
   run.scenario.faults.push_back(simulation::fault_order(fault, experiments::kConnectS + kLearnS, kSpinS));
   run.settings = experiments::fitting(run.scenario);
   run.seed = seed;
