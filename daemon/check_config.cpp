@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "core/files/scratch_folder.hpp"
 #include "daemon/dashboard/access.hpp"
 #include "daemon/dashboard/server.hpp"
@@ -114,8 +115,8 @@ Finding store_content(const std::string& store, const OccupancyGrid& first) {
     const mapping::store::MapStore copy{copied, first};
     std::size_t refusals = 0;
     for (const mapping::store::StoredRevision& one : copy.history()) refusals += one.refused ? 1 : 0;
-    std::string text = store + ": newest revision of this map " + std::to_string(copy.newest()) + ", " +
-                       std::to_string(refusals) + " refusals";
+    std::string text =
+        store + ": newest revision of this map " + std::to_string(copy.newest()) + ", " + counted(refusals, "refusal");
     if (const std::string others = words_of_others(copy); !others.empty())
       return {Level::kWarning, "store", store + ": " + others};
     if (const std::string missing = words_of_missing(copy.newest(), known); !missing.empty())
@@ -307,8 +308,7 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
 std::vector<Finding> check_what_is_read(const SettingsReading& reading, const std::string& config) {
   const std::size_t mistakes = reading.problems.size();
   std::vector<Finding> findings{
-      {Level::kError, "settings",
-       config + ": " + std::to_string(mistakes) + (mistakes == 1 ? " mistake" : " mistakes") + ": see standard error"}};
+      {Level::kError, "settings", config + ": " + counted(mistakes, "mistake") + ": see standard error"}};
   const Settings& settings = reading.settings;
   if (reading.knows("map.file") && !settings.map.file.empty()) (void)check_map(settings, config, findings);
   if (reading.knows("robot.port")) findings.push_back(port_finding(settings, PortId::kRobot));

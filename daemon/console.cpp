@@ -8,6 +8,7 @@
 #include <iostream>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "daemon/system/system_journal.hpp"
 #include "daemon/system/terminal_width.hpp"
 
@@ -47,7 +48,8 @@ void Console::write(const LeveledLine& line) {
     return;
   }
   if (const std::uint64_t lost = std::exchange(lost_, 0); lost > 0) {
-    write({LogLevel::kWarn, std::to_string(lost) + " lines of this log are lost: nobody has read it"});
+    write(
+        {LogLevel::kWarn, counted(lost, "line of this log is", "lines of this log are") + " lost: nobody has read it"});
     return write(line);
   }
   if (on_terminal_) std::cerr << "\r\033[K" << std::flush;

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/counted.hpp"
 #include "daemon/control/calibration_json.hpp"
 #include "daemon/settings/settings.hpp"
 #include "localization/localizer.hpp"
@@ -125,7 +126,7 @@ void print_keys(const MotionCalibration& found) {
 void print_calibration_text(const MotionCalibration& as_they_are, const MotionCalibration& corrected,
                             const Drive& drive) {
   std::cout << std::setprecision(3) << "# " << drive.driven_m << " m and " << degrees(drive.turned_rad) / 360.0
-            << " turns in " << drive.segments.size() << " segments, " << 100.0 * as_they_are.outlier_share
+            << " turns in " << counted(drive.segments.size(), "segment") << ", " << 100.0 * as_they_are.outlier_share
             << " % of them rather slips; the localizer's own error "
             << as_they_are.of(MotionSource::kEstimatePosition).value << " m, "
             << degrees(as_they_are.of(MotionSource::kEstimateHeading).value) << " deg\n";

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/counted.hpp"
 #include "drivers/carmen/carmen_bytes.hpp"
 #include "drivers/port/byte_log.hpp"
 #include "tool/progress.hpp"
@@ -100,19 +101,22 @@ std::string_view pose_source(const drivers::carmen::CarmenSurvey& survey) {
 void print_import_text(const CarmenImport& done, const std::string& recording) {
   const drivers::carmen::CarmenSurvey& survey = done.survey;
   const bool centimetres = survey.units == drivers::lms200::Units::kCentimetre;
-  std::cout << recording << ": " << survey.scans << " scans as " << name_of(survey.variant) << " in "
-            << (centimetres ? "cm" : "mm") << ", " << done.poses << " odometry packets, poses from "
+  std::cout << recording << ": " << counted(survey.scans, "scan") << " as " << name_of(survey.variant) << " in "
+            << (centimetres ? "cm" : "mm") << ", " << counted(done.poses, "odometry packet") << ", poses from "
             << pose_source(survey) << '\n';
   if (const std::string line = drivers::carmen::no_return_line(survey); !line.empty()) std::cout << line << '\n';
   if (survey.clock.by_logger) std::cout << "times: the logger's, since the time stamps do not tell the scans apart\n";
   if (survey.doubled_scans > 0) {
-    std::cout << survey.doubled_scans << " scans without a pose left out: the log's other scans carry poses\n";
+    std::cout << counted(survey.doubled_scans, "scan")
+              << " without a pose left out: the log's other scans carry poses\n";
   }
   if (pose_source(survey) == "none") std::cout << "the log has no pose: the robot is taken to stand still\n";
   for (const auto* notes : {&survey.notes, &survey.drive_notes}) {
     for (const std::string& note : *notes) std::cout << note << '\n';
   }
-  if (done.gaps > 0) std::cout << done.gaps << " pauses of more than an hour are left without odometry\n";
+  if (done.gaps > 0)
+    std::cout << counted(done.gaps, "pause of more than an hour is", "pauses of more than an hour are")
+              << " left without odometry\n";
 }
 
 void print_import_json(const CarmenImport& done, const std::string& recording) {

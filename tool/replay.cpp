@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "core/counted.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "tool/progress.hpp"
 #include "tool/subcommands.hpp"
@@ -27,10 +28,10 @@ struct ReplayOptions {
 void print_summary(const daemon::RunReport& report) {
   const double scans = static_cast<double>(report.scans.decoded);
   const std::string differences =
-      report.journal_differences == 0 ? "" : " with " + std::to_string(report.journal_differences) + " differences";
-  std::cout << report.scans.decoded << " scans, " << report.phases << " delta phases, " << report.changes.accepted()
-            << " revisions, " << report.changes.refused() << " refused, lost " << report.time_lost_s << " s, "
-            << report.cpu_total_s / scans * 1e3 << " ms CPU a scan, peak "
+      report.journal_differences == 0 ? "" : " with " + counted(report.journal_differences, "difference");
+  std::cout << counted(report.scans.decoded, "scan") << ", " << counted(report.phases, "delta phase") << ", "
+            << counted(report.changes.accepted(), "revision") << ", " << report.changes.refused() << " refused, lost "
+            << report.time_lost_s << " s, " << report.cpu_total_s / scans * 1e3 << " ms CPU a scan, peak "
             << static_cast<double>(report.peak_resident_bytes) / (1024.0 * 1024.0) << " MB, journal " << report.journal
             << differences << "; began with " << report.began << '\n';
 }

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/counted.hpp"
 #include "simulation/score/change_score.hpp"
 #include "simulation/score/trajectory_score.hpp"
 #include "tool/subcommands.hpp"
@@ -112,7 +113,7 @@ std::string changes_line(const score::ChangeScore& changes) {
 void print_score(const score::TrajectoryScore& trajectory, const score::ChangeScore& changes) {
   std::cout << std::fixed << std::setprecision(3) << "localization: median " << trajectory.median_m << " m, p95 "
             << trajectory.p95_m << " m, max " << trajectory.max_m << " m, beyond 0.5 m " << std::setprecision(1)
-            << 100.0 * trajectory.share_beyond_half_metre << " % of " << trajectory.poses << " poses\n"
+            << 100.0 * trajectory.share_beyond_half_metre << " % of " << counted(trajectory.poses, "pose") << "\n"
             << changes_line(changes) << '\n'
             << std::setprecision(2) << "ghosts: " << changes.ghosts_m2 << " m², of which " << changes.stale_ghosts_m2
             << " m² stand since the start map\n";

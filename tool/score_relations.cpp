@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/counted.hpp"
 #include "core/geometry/angle.hpp"
 #include "simulation/score/relation_score.hpp"
 #include "tool/subcommands.hpp"
@@ -45,7 +46,8 @@ void print_relation_score(const score::RelationScore& found, bool json) {
   const auto print = [](const char* what, const score::MeanAndDeviation& figure, double unit, const char* name) {
     std::cout << what << figure.mean / unit << " +- " << figure.deviation / unit << ' ' << name << '\n';
   };
-  std::cout << found.relations << " relations, " << found.outside << " outside of the trajectory\n" << std::fixed;
+  std::cout << counted(found.relations, "relation") << ", " << found.outside << " outside of the trajectory\n"
+            << std::fixed;
   std::cout << std::setprecision(4);
   print("translation:         ", found.translation_m, 1.0, "m");
   print("translation squared: ", found.translation2_m2, 1.0, "m²");

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "core/counted.hpp"
+
 namespace deltamap {
 namespace {
 
@@ -39,12 +41,12 @@ class PgmReader final : public PictureReader {
   [[nodiscard]] std::vector<std::string> notes() const override {
     std::vector<std::string> notes;
     if (too_bright_ > 0) {
-      notes.push_back(file_.string() + ": " + std::to_string(too_bright_) + " pixels are brighter than the header's " +
-                      std::to_string(brightest_) + ": taken for that");
+      notes.push_back(file_.string() + ": " + counted(too_bright_, "pixel is", "pixels are") +
+                      " brighter than the header's " + std::to_string(brightest_) + ": taken for that");
     }
     if (surplus_bytes_ > 1) {  // one: a line feed at the end
-      notes.push_back(file_.string() + ": " + std::to_string(surplus_bytes_) + " bytes lie behind the last of " +
-                      std::to_string(width_) + " x " + std::to_string(height_) +
+      notes.push_back(file_.string() + ": " + counted(surplus_bytes_, "byte lies", "bytes lie") +
+                      " behind the last of " + std::to_string(width_) + " x " + std::to_string(height_) +
                       " pixels and are left out: are width and height right?");
     }
     return notes;

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "core/files/replace_file.hpp"
 #include "daemon/kept/kept_pose.hpp"
 #include "daemon/outputs/output_place.hpp"
@@ -181,7 +182,7 @@ void go_on_without(OpenedStore& opened, const fs::path& file, const OccupancyGri
 std::string words_of_others(const MapStore& store) {
   const std::uint32_t others = store.newest() == 0 ? store.revisions_of_others() : 0;
   if (others == 0) return "";
-  return "holds " + std::to_string(others) + (others == 1 ? " revision" : " revisions") +
+  return "holds " + counted(others, "revision") +
          " of another first map and none of this one: begins with the first map";
 }
 

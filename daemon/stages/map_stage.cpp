@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "drivers/port/port_clock.hpp"
 
 namespace deltamap::daemon {
@@ -22,8 +23,10 @@ std::string words_of(const MapOrder& order, const MapRevision& made, const mappi
   const std::string all = wanted.held_before > 0 ? "revisions " + first + " to " + number : "revision " + number;
   std::string text = "revision " + std::to_string(made.number) + " ";
   text += order.kind == MapOrder::Kind::kUndo ? "takes " + all + " back" : "is " + all + " again";
-  text += " from the next scan on: " + std::to_string(made.changes.size()) + " cells";
-  return wanted.kept == 0 ? text : text + ", " + std::to_string(wanted.kept) + " have changed since and stay";
+  text += " from the next scan on: " + counted(made.changes.size(), "cell");
+  return wanted.kept == 0
+             ? text
+             : text + ", " + counted(wanted.kept, "has changed since and stays", "have changed since and stay");
 }
 
 /// " added=12 freed=3 forgotten=0"
@@ -87,7 +90,7 @@ void MapStage::tell_and_hand_on(const MapStep::Result& result) {
     return hand_on(result);
   }
   if (!result.note.withdraws.empty()) {
-    wiring_.log("pose proved wrong: withdrawn=" + std::to_string(result.note.withdraws.size()) + " revisions");
+    wiring_.log("pose proved wrong: withdrawn=" + counted(result.note.withdraws.size(), "revision"));
   }
   wiring_.log("map changed: revision=" + std::to_string(result.revision->number) +
               " phase=" + std::to_string(result.note.phase) + cells_in(result.note) + evidence_of(result.note) +

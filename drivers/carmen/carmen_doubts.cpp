@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <set>
 
+#include "core/counted.hpp"
 #include "core/files/shortest_text.hpp"
 #include "core/geometry/angle.hpp"
 #include "drivers/carmen/carmen_survey.hpp"
@@ -32,8 +33,6 @@ bool is_same_place(const Pose2& one, const Pose2& other) {
   return distance_between(one, other) < kSamePlace_m &&
          std::abs(turn_between(one.theta, other.theta)) < kSameHeading_rad;
 }
-
-std::string count_of_scans(std::size_t scans) { return std::to_string(scans) + (scans == 1 ? " scan" : " scans"); }
 
 }  // namespace
 
@@ -94,7 +93,7 @@ std::string CarmenDoubts::far_line() const {
   const std::string question = " that the scanner can measure: are its ranges in mm? CARMEN has metres";
   if (far_scans_ == 0) return "";
   if (far_scans_ == scans_) return "no beam of the log has a range" + question;
-  return count_of_scans(far_scans_) + " (the first in line " + std::to_string(first_far_line_) + ") " +
+  return counted(far_scans_, "scan") + " (the first in line " + std::to_string(first_far_line_) + ") " +
          (far_scans_ == 1 ? "has" : "have") + " hardly a range" + question;
 }
 
@@ -136,7 +135,7 @@ std::string CarmenDoubts::mount_line(const CarmenFaults& faults) const {
   const auto elsewhere = static_cast<std::size_t>(std::count_if(mounts_.begin(), mounts_.end(), is_elsewhere));
   if (elsewhere > 0) {
     const auto first = std::find_if(mounts_.begin(), mounts_.end(), is_elsewhere);
-    line += "; elsewhere in " + count_of_scans(elsewhere) + " (the first in line " + std::to_string(first->line) + ")";
+    line += "; elsewhere in " + counted(elsewhere, "scan") + " (the first in line " + std::to_string(first->line) + ")";
   }
   if (mount && offset_m && std::abs(*offset_m - mount->x) > kSamePlace_m)
     line += "; its robot_frontlaser_offset says " + rounded(*offset_m, 1e4) + " m";
@@ -147,31 +146,33 @@ std::vector<std::string> CarmenDoubts::lines(const CarmenFaults& faults) const {
   std::vector<std::string> lines;
   const auto add = [&](std::string line) { lines.push_back(std::move(line)); };
   for (const Beams& one : beams_) {
-    const std::string of_scans = beams_.size() > 1 ? " in " + count_of_scans(one.scans) : "";
+    const std::string of_scans = beams_.size() > 1 ? " in " + counted(one.scans, "scan") : "";
     if (one.beyond > 0) {
-      add(std::to_string(one.beyond) + " of " + std::to_string(one.all) + " beams a scan lie beyond ±" +
-          rounded(one.half_deg, 1.0) + "° and are left out" + of_scans);
+      add(std::to_string(one.beyond) + " of " + std::to_string(one.all) +
+          (one.beyond == 1 ? " beams a scan lies beyond ±" : " beams a scan lie beyond ±") +
+          rounded(one.half_deg, 1.0) + (one.beyond == 1 ? "° and is left out" : "° and are left out") + of_scans);
     }
     if (one.missing > 0)
-      add("the log has no beam for " + std::to_string(one.missing) + " bearings a scan: not valid" + of_scans);
+      add("the log has no beam for " + counted(one.missing, "bearing") + " a scan: not valid" + of_scans);
     if (std::abs(one.step_deg - one.variant_step_deg) > kSameStep * one.variant_step_deg)
       add("beams every " + rounded(one.step_deg, 1e3) + "°: each bearing, every " + rounded(one.variant_step_deg, 1e3) +
           "°, takes the nearest" + of_scans);
   }
   if (guessed_fields_ > 0) {
     add("FLASER lines do not say where their " + std::to_string(guessed_values_) +
-        " values point: 180° are assumed in " + count_of_scans(guessed_fields_));
+        " values point: 180° are assumed in " + counted(guessed_fields_, "scan"));
   }
   for (const auto& [kind, count] : faults.others) {
-    add(count_of_scans(count) + " of " + kind +
+    add(counted(count, "scan") + " of " + kind +
         " left out: one laser is read, that of FLASER, ROBOTLASER1 and RAWLASER1");
   }
   if (faults.broken_lines > 0) {
-    std::string line = std::to_string(faults.broken_lines) + " broken lines left out";
+    std::string line = counted(faults.broken_lines, "broken line") + " left out";
     for (const std::string& why : faults.broken) line += "; " + why;
     add(line);
   }
-  if (not_numbers_ > 0) add(std::to_string(not_numbers_) + " ranges are no numbers, or below 0: not valid");
+  if (not_numbers_ > 0)
+    add(counted(not_numbers_, "range is no number", "ranges are no numbers") + ", or below 0: not valid");
   if (std::string line = far_line(); !line.empty()) add(std::move(line));
   if (std::string line = mount_line(faults); !line.empty()) add(std::move(line));
   return lines;

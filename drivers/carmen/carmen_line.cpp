@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "core/counted.hpp"
+
 namespace deltamap::drivers::carmen {
 namespace {
 
@@ -83,7 +85,7 @@ class Words {
     const auto before_host = number_in(words[rest - 3]);
     const bool has_no_stamp = before_host && std::abs(*before_host) <= kMostHeading_rad && there + 1 == announced;
     if (there != announced && !has_no_stamp)
-      refuse(std::to_string(count) + " ranges announced, " + std::to_string(there) + " there");
+      refuse(counted(announced, "range") + " announced, " + std::to_string(there) + " there");
   }
 
   /// No record has more words than its times.

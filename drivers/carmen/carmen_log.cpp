@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "core/files/foreign_file.hpp"
 
 namespace deltamap::drivers::carmen {
@@ -109,8 +110,8 @@ void CarmenLog::end() {
                              ": not a CARMEN log: no FLASER, ROBOTLASER1, RAWLASER1 or ODOM line" + others);
   }
   if (lines_since_record_ == 0) return;
-  cut_ = broken_since_record_.front() + "; the log ends there, the " + std::to_string(records_) +
-         " scans and poses before it are used";
+  cut_ = broken_since_record_.front() + "; the log ends there, the " +
+         counted(records_, "scan or pose before it is used", "scans and poses before it are used");
 }
 
 std::optional<CarmenRecord> CarmenLog::next() {

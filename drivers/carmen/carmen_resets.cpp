@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.hpp"
 #include "core/geometry/angle.hpp"
 
 namespace deltamap::drivers::carmen {
@@ -86,7 +87,7 @@ Pose2 without_resets(std::span<const OdometryReset> resets, std::size_t line, co
 
 std::string resets_line(std::span<const OdometryReset> resets) {
   if (resets.empty()) return "";
-  return "the odometry jumps " + std::to_string(resets.size()) + " times (the first in line " +
+  return "the odometry jumps " + counted(resets.size(), "time") + " (the first in line " +
          std::to_string(resets.front().line) + "), as at a reset: no drive, its poses go on from where they were";
 }
 

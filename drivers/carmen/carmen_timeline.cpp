@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/counted.hpp"
+
 namespace deltamap::drivers::carmen {
 namespace {
 
@@ -64,15 +66,15 @@ std::vector<std::string> CarmenTimeline::notes() const {
   std::vector<std::string> notes;
   const auto from = [](const Seen& seen) { return " (the first in line " + std::to_string(seen.first_line) + ")"; };
   if (set_back_.count > 0) {
-    notes.push_back("the log's clock was set back " + std::to_string(set_back_.count) + " times" + from(set_back_) +
+    notes.push_back("the log's clock was set back " + counted(set_back_.count, "time") + from(set_back_) +
                     ", by up to " + text_of(seconds(farthest_back_)) + " s: times go on from there");
   }
   if (set_apart_.count > 0) {
-    notes.push_back(std::to_string(set_apart_.count) + " scans repeat the time stamp of the scan before" +
+    notes.push_back(counted(set_apart_.count, "scan repeats", "scans repeat") + " the time stamp of the scan before" +
                     from(set_apart_) + ": set apart by the logger's times");
   }
   if (repeated_.count > 0) {
-    notes.push_back(std::to_string(repeated_.count) + " scans repeat the time stamp of the scan before" +
+    notes.push_back(counted(repeated_.count, "scan repeats", "scans repeat") + " the time stamp of the scan before" +
                     from(repeated_) + ": left out");
   }
   return notes;

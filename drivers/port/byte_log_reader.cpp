@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "drivers/port/byte_log.hpp"
 
 namespace deltamap::drivers::port {
@@ -73,7 +74,7 @@ LogFaults ByteLogReader::faults() const {
 void ByteLogReader::end_at_cut(const std::string& why) {
   LogCut cut{file_.block_at(), size_bytes() - file_.block_at(), last_record_, {}};
   cut.text = file_.path().string() + ": byte " + std::to_string(cut.byte) + ": cut short, " + why + "; " +
-             std::to_string(cut.unread_bytes) + " bytes are left out, ";
+             counted(cut.unread_bytes, "byte is", "bytes are") + " left out, ";
   if (last_record_) {
     char after[32];
     (void)std::snprintf(after, sizeof after, "%.3f", seconds(*last_record_ - *first_record_));

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "core/counted.hpp"
+
 namespace deltamap::drivers::port {
 namespace {
 
@@ -33,8 +35,7 @@ std::string words_of_move(double moved_s) {
 }  // namespace
 
 std::string LogAudit::Tally::line(const std::string& what) const {
-  return std::to_string(count) + (count == 1 ? " packet " : " packets ") + what + " (the first at byte " +
-         std::to_string(first_byte) + ")";
+  return counted(count, "packet") + " " + what + " (the first at byte " + std::to_string(first_byte) + ")";
 }
 
 void LogAudit::sealed(std::uint32_t number, std::uint64_t byte) {
@@ -91,7 +92,7 @@ LogFaults LogAudit::faults(const std::string& file, bool is_whole) const {
   faults.is_unchecked = numbered_ == 0 && is_ours_ && unnumbered_.count > 0 && !faults.lacks_records;
   if (faults.is_unchecked) doubt(why_unchecked());
   for (const auto& [interface, count] : foreign_) {
-    doubt(std::to_string(count) + " packets of another interface, " + interface + ", left out");
+    doubt(counted(count, "packet") + " of another interface, " + interface + ", left out");
   }
   if (moved_s_ != 0.0) doubt(words_of_move(moved_s_));
   faults.lacks_end = is_whole && numbered_ > 0 && !has_end_;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/counted.hpp"
+
 namespace deltamap::drivers::port {
 
 Reconnect::Pause Reconnect::failed(std::string reason, Timestamp now) {
@@ -18,7 +20,7 @@ Reconnect::Pause Reconnect::failed(std::string reason, Timestamp now) {
 
 std::optional<std::string> Reconnect::connected() {
   if (failures_ == 0) return std::nullopt;
-  std::string log = "connected again after " + std::to_string(failures_) + (failures_ == 1 ? " failure" : " failures");
+  std::string log = "connected again after " + counted(failures_, "failure");
   failures_ = 0;
   pause_s_ = 0.0;
   told_.clear();

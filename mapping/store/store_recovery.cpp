@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "core/counted.hpp"
 #include "mapping/store/chain_recovery.hpp"
 #include "mapping/store/history.hpp"
 #include "mapping/store/map_codec.hpp"
@@ -148,7 +149,7 @@ std::string Recovery::words() const {
     const std::string nothing = "nothing of this first map's history can be recovered: begins with the first map";
     return known > 0 ? nothing + told_lost : nothing;
   }
-  std::string text = std::to_string(revisions) + (revisions == 1 ? " revision" : " revisions") + " recovered";
+  std::string text = counted(revisions, "revision") + " recovered";
   if (!computed.empty()) text += ", of these computed from their neighbours: " + listed(ranges_of(computed));
   text += told_lost;
   if (goes_on_without) text += " (later maps are without what these alone have changed)";

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/counted.hpp"
 #include "tool/decode/decoded_frame.hpp"
 #include "tool/subcommands.hpp"
 
@@ -84,14 +85,16 @@ void print_json(const DecodedStream& stream, const std::vector<Garbage>& garbage
 
 void print_text(const DecodedStream& stream, const std::vector<Garbage>& garbage) {
   for (const DecodedFrame& frame : stream.frames) {
-    std::cout << frame.name << "  (from " << frame.from << ", byte " << frame.at << ", " << frame.size << " bytes)\n";
+    std::cout << frame.name << "  (from " << frame.from << ", byte " << frame.at << ", " << counted(frame.size, "byte")
+              << ")\n";
     const Json fields = json_of(frame)["fields"];
     for (const auto& [name, value] : fields.items()) {
       std::cout << "  " << name << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
     }
   }
   for (const Garbage& g : garbage) {
-    std::cout << "garbage  (byte " << g.at << ", " << g.bytes.size() << " bytes): " << hex_of(g.bytes) << '\n';
+    std::cout << "garbage  (byte " << g.at << ", " << counted(g.bytes.size(), "byte") << "): " << hex_of(g.bytes)
+              << '\n';
   }
 }
 

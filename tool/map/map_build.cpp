@@ -13,6 +13,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/counted.hpp"
 #include "core/files/grid_file.hpp"
 #include "core/files/replace_file.hpp"
 #include "daemon/settings/settings.hpp"
@@ -154,12 +155,13 @@ Json built_as_json(const std::string& map, const std::vector<SurveyedDrive>& dri
 
 void print_built(const Json& built) {
   std::cout << built["map"].get<std::string>() << ": " << built["width"] << " x " << built["height"] << " cells of "
-            << built["resolution_m"].get<double>() << " m, from " << built["keyframes"] << " keyframes ("
-            << built["keyframes_by_odometry_alone"] << " placed by odometry alone) and " << built["loops"]
-            << " loops\n";
+            << built["resolution_m"].get<double>() << " m, from "
+            << counted(built["keyframes"].get<std::uint64_t>(), "keyframe") << " ("
+            << built["keyframes_by_odometry_alone"] << " placed by odometry alone) and "
+            << counted(built["loops"].get<std::uint64_t>(), "loop") << "\n";
   for (const Json& drive : built["drives"]) {
-    std::cout << drive["recording"].get<std::string>() << ": " << drive["scans"] << " scans, " << std::fixed
-              << std::setprecision(1) << drive["driven_m"].get<double>() << " m, from "
+    std::cout << drive["recording"].get<std::string>() << ": " << counted(drive["scans"].get<std::uint64_t>(), "scan")
+              << ", " << std::fixed << std::setprecision(1) << drive["driven_m"].get<double>() << " m, from "
               << drive["start"].get<std::string>() << " to " << drive["end"].get<std::string>() << " (x,y,deg)\n";
   }
   if (built["loops"] == 0) std::cout << "no place was seen twice: where the way was long the map may be bent\n";

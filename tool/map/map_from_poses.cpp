@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/counted.hpp"
 #include "core/files/grid_file.hpp"
 #include "core/grid/grid_ray.hpp"
 #include "drivers/carmen/carmen_log.hpp"
@@ -120,7 +121,7 @@ std::string as_json(const MapFromPoses& made, const std::string& yaml) {
 
 void print(const MapFromPoses& made, const std::string& yaml) {
   std::cout << yaml << ": " << made.grid.width() << " x " << made.grid.height() << " cells of "
-            << made.grid.resolution_m() << " m from " << made.scans << " scans, "
+            << made.grid.resolution_m() << " m from " << counted(made.scans, "scan") << ", "
             << count_of(made.grid, CellState::kOccupied) << " occupied, " << count_of(made.grid, CellState::kFree)
             << " free\n";
   if (const std::string line = drivers::carmen::no_return_line(made.survey); !line.empty()) std::cout << line << '\n';

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/counted.hpp"
 #include "core/files/file_lock.hpp"
 #include "core/files/grid_file.hpp"
 #include "daemon/maps/png_bytes.hpp"
@@ -155,8 +156,9 @@ void compare(const HistoryOptions& options) {
     if (options.cells) result["changes"] = changes_as_json(changes);
     std::cout << result.dump() << '\n';
   } else {
-    std::printf("%zu cells differ: %zu became occupied, %zu free, %zu unknown; acceptance %.4f\n", changes.size(),
-                became[1], became[0], became[2], acceptance);
+    std::printf("%s: %zu became occupied, %zu free, %zu unknown; acceptance %.4f\n",
+                counted(changes.size(), "cell differs", "cells differ").c_str(), became[1], became[0], became[2],
+                acceptance);
     if (options.cells) print_changes(changes);
   }
 }
@@ -207,7 +209,7 @@ void undo(const HistoryOptions& options) {
   if (options.json) {
     std::cout << nlohmann::json{{"number", number}, {"undone", options.number}, {"cells", cells}}.dump() << '\n';
   } else {
-    std::printf("revision %u takes revision %u back: %zu cells\n", number, options.number, cells);
+    std::printf("revision %u takes revision %u back: %s\n", number, options.number, counted(cells, "cell").c_str());
   }
 }
 

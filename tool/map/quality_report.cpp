@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/counted.hpp"
 #include "daemon/maps/png_bytes.hpp"
 #include "tool/picture/scene.hpp"
 
@@ -79,7 +80,8 @@ std::string what(Flaw flaw, const MapQuality& quality) {
     case Flaw::kWallsDrivenThrough:
       return "the robot drove through walls";
     case Flaw::kUnfitScans:
-      return text("%zu of %zu scans do not fit the map", quality.fit.unfit, quality.fit.scans);
+      return std::to_string(quality.fit.unfit) + " of " + counted(quality.fit.scans, "scan") +
+             (quality.fit.unfit == 1 ? " does not fit the map" : " do not fit the map");
   }
   return "";
 }

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "core/counted.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 
@@ -185,9 +186,11 @@ void put_in_order(const fs::path& file, int back_steps, int first_back, RunFolde
   if (back_steps == 0) return;
   std::stable_sort(run.rows.begin(), run.rows.end(),
                    [](const Row& one, const Row& other) { return one.time < other.time; });
-  run.notes.push_back(file.string() + ":" + std::to_string(first_back) + ": the time steps back" +
-                      (back_steps == 1 ? "" : ", as in " + std::to_string(back_steps - 1) + " lines more") +
-                      "; scans are shown in the order of their times");
+  run.notes.push_back(
+      file.string() + ":" + std::to_string(first_back) + ": the time steps back" +
+      (back_steps == 1 ? ""
+                       : ", as in " + counted(static_cast<std::uint64_t>(back_steps - 1), "line more", "lines more")) +
+      "; scans are shown in the order of their times");
 }
 
 void read_rows(const fs::path& file, RunFolder& run) {

@@ -132,7 +132,7 @@ std::vector<Defect> defects() {
       {"a heading that is none", with_line([](Line& line) { line.robot.theta = 1.1e9; }),
        "has a heading of 1.1e+09 rad", kScans - 1},
       {"a range that is none", with_line([](Line& line) { line.ranges[5] = "nan"; }),
-       "1 ranges are no numbers, or below 0: not valid"},
+       "1 range is no number, or below 0: not valid"},
       {"ranges in millimetres", with_line([](Line& line) {
          for (std::string& range : line.ranges) range = text("%.0f", 1000.0 * std::stod(range));
        }),
@@ -144,22 +144,22 @@ std::vector<Defect> defects() {
       {"a second laser", with_line([](Line& line) { line.before = "ROBOTLASER2 0 0 0 0 0\n"; }),
        "1 scan of ROBOTLASER2 left out"},
       {"a clock set back by an hour", with_all_from([](Line& line) { line.stamp_s -= 3600.0; }),
-       "the log's clock was set back 1 times"},
+       "the log's clock was set back 1 time "},
       {"a clock set back, without the logger's", with_all_from([](Line& line) {
          line.stamp_s -= 60.0;
          line.logger_s = 0.0;
        }),
-       "the log's clock was set back 1 times"},
+       "the log's clock was set back 1 time "},
       {"a clock set back by a little", with_all_from([](Line& line) { line.stamp_s -= 0.5; }),
        "repeat the time stamp of the scan before"},
-      {"a wrong stamp", with_line([](Line& line) { line.stamp_s = 12.0; }), "the log's clock was set back 1 times"},
+      {"a wrong stamp", with_line([](Line& line) { line.stamp_s = 12.0; }), "the log's clock was set back 1 time "},
       {"a repeated stamp", with_line([](Line& line) { line.stamp_s -= kStep_s; }),
-       "1 scans repeat the time stamp of the scan before"},
+       "1 scan repeats the time stamp of the scan before"},
       {"a line twice", with_text([](const std::string& line) { return line + "\n" + line; }), "left out"},
       {"odometry begins anew", with_all_from([](Line& line) { line.robot = inverse(truth(0)) * line.robot; }),
-       "the odometry jumps 1 times"},
-      {"odometry jumps", with_all_from(moved_by({5.0, -3.0, 0.0})), "the odometry jumps 1 times"},
-      {"odometry turns", with_all_from(moved_by({0.0, 0.0, 1.5})), "the odometry jumps 1 times"},
+       "the odometry jumps 1 time "},
+      {"odometry jumps", with_all_from(moved_by({5.0, -3.0, 0.0})), "the odometry jumps 1 time "},
+      {"odometry turns", with_all_from(moved_by({0.0, 0.0, 1.5})), "the odometry jumps 1 time "},
       {"270 degrees",
        [](const std::vector<Line>& lines, std::size_t at) {
          std::string log;
