@@ -164,7 +164,7 @@ CarmenImport import_carmen(const fs::path& log, const fs::path& recording, std::
     throw std::runtime_error(log.string() + ": cannot be imported without times: " + done.survey.no_clock +
                              ", and the logger's times do not help (`map from-poses` needs none)");
   }
-  drivers::carmen::CarmenLog lines{log, done.survey.clock};
+  drivers::carmen::CarmenLog lines{log, done.survey.clock, done.survey.headings};
   Draft draft{recording};
   drivers::port::ByteLogWriter writer{draft.path(), {drivers::carmen::kImportBaud, drivers::carmen::kImportBaud}};
   drivers::carmen::CarmenBytes bytes{done.survey,

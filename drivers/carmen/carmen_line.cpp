@@ -17,6 +17,8 @@ namespace {
 
 constexpr int kMaxReadings = 65536;
 constexpr std::size_t kPoseWords = 6;                // of the laser and of the robot
+constexpr std::size_t kMotionWords = 5;              // of ROBOTLASER1: speeds, safety distances, turn axis
+constexpr std::size_t kTimesWords = 3;               // stamp, host, logger's time
 constexpr double kMostHeading_rad = 1000.0;          // 160 turns: one that is not wrapped; a time stamp is more
 constexpr double kFarthest_m = 1e8;                  // UTM coordinates are less, time stamps more
 constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // the year 2255: a Timestamp ends soon after
@@ -24,7 +26,8 @@ constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // the year 2255: a Timesta
 /// Takes the words of a line one by one; says what was expected where one is missing or broken.
 class Words {
  public:
-  Words(std::string_view text, std::string place) : text_{text}, place_{std::move(place)} {}
+  Words(std::string_view text, std::string place, HeadingUnit headings)
+      : text_{text}, place_{std::move(place)}, headings_{headings} {}
 
   [[noreturn]] void refuse(const std::string& why) const { throw std::runtime_error(place_ + ": " + why); }
 
@@ -53,39 +56,60 @@ class Words {
 
   int count(const char* name) {
     const std::string_view found = word(name);
-    int value = 0;
-    const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
-    if (error != std::errc{} || end != found.data() + found.size() || value < 0 || value > kMaxReadings) {
-      refuse_word(name, found, "a count");
-    }
-    return value;
+    const auto value = count_in(found);
+    if (!value) refuse_word(name, found, "a count");
+    return static_cast<int>(*value);
   }
 
-  Pose2 pose(const char* name) {
+  struct Posed {
+    Pose2 pose;
+    double heading = 0.0;  // as it stands there
+  };
+  Posed pose(const char* name) {
     const double x = finite(name);
     const double y = finite(name);
-    const double heading_rad = finite(name);
+    const double heading = finite(name);
+    const double heading_rad = headings_ == HeadingUnit::kDegree ? radians(heading) : heading;
     if (std::abs(heading_rad) > kMostHeading_rad) refuse_number(name, "heading", heading_rad, "rad");
     if (std::max(std::abs(x), std::abs(y)) > kFarthest_m)
       refuse_number(name, "place", std::max(std::abs(x), std::abs(y)), "m");
-    return {x, y, wrapped_angle(heading_rad)};
+    return {{x, y, wrapped_angle(heading_rad)}, heading};
   }
 
-  /// A host stands before the last word of a line that the logger has ended: what is told of the number of values can
-  /// be held against it. `others` are the words between the values and the time stamp.
+  /// Holds the number of ranges that is told against the length of the line. `others` are the words between the ranges
+  /// and the time stamp.
   void require_count(int count, std::size_t others) const {
-    std::vector<std::string_view> words;
-    for (Words left = *this; !left.at_end();) words.push_back(left.word("word"));
-    constexpr std::size_t kTimes = 3;
-    const std::size_t rest = words.size();
-    if (rest < others + kTimes || number_in(words[rest - 2])) return;
+    const std::vector<std::string_view> words = ended_words(others);
+    if (words.empty()) return;
     const auto announced = static_cast<std::size_t>(count);
-    const std::size_t there = rest - others - kTimes;
+    const std::size_t there = words.size() - others - kTimesWords;
     // Without a stamp the word before the host is a heading.
-    const auto before_host = number_in(words[rest - 3]);
-    const bool has_no_stamp = before_host && std::abs(*before_host) <= kMostHeading_rad && there + 1 == announced;
-    if (there != announced && !has_no_stamp)
-      refuse(counted(announced, "range") + " announced, " + std::to_string(there) + " there");
+    if (there != announced && (there + 1 != announced || is_stamp_before_host(words, kMostHeading_rad)))
+      refuse_count(announced, "range", there);
+  }
+
+  /// As require_count(), where the number of remissions and these stand behind the ranges.
+  void require_counts(int count, std::size_t others) const {
+    const std::vector<std::string_view> words = ended_words(others);
+    if (words.empty()) return;
+    const auto announced = static_cast<std::size_t>(count);
+    const auto fits = [&](std::size_t ranges, std::size_t times = kTimesWords) {
+      const auto remissions = ranges < words.size() ? count_in(words[ranges]) : std::nullopt;
+      return remissions && ranges + 1 + *remissions + others + times == words.size();
+    };
+    if (fits(announced)) return;
+    const bool has_no_stamp = !is_stamp_before_host(words, kFarthest_m) && !fits(announced - 1);
+    if (has_no_stamp && fits(announced, kTimesWords - 1)) return;
+    const auto remissions = announced < words.size() ? count_in(words[announced]) : std::nullopt;
+    const bool has_remissions = remissions && announced + 1 + others + kTimesWords <= words.size();
+    const std::size_t left = has_remissions ? words.size() - announced - 1 - others - kTimesWords : 0;
+    if (has_remissions && *remissions == announced) refuse_count(*remissions, "remission", left);
+    for (std::size_t off = 1; off < words.size(); ++off) {
+      if (off <= announced && fits(announced - off)) refuse_count(announced, "range", announced - off);
+      if (fits(announced + off)) refuse_count(announced, "range", announced + off);
+    }
+    if (has_remissions) refuse_count(*remissions, "remission", left);
+    refuse(counted(announced, "range") + " announced: no number of remissions stands behind them");
   }
 
   /// No record has more words than its times.
@@ -98,7 +122,7 @@ class Words {
   /// The words after a record's own: stamp, host, logger's time. Some logs have no stamp, or nothing at all.
   CarmenTimes times() {
     CarmenTimes times;
-    for (Words left = *this; !left.at_end() && times.words < 3; ++times.words) (void)left.word("time");
+    for (Words left = *this; !left.at_end() && times.words < kTimesWords; ++times.words) (void)left.word("time");
     if (times.words == 0) return times;
     Words ahead = *this;
     const bool has_stamp = number_in(ahead.word("time stamp")).has_value();
@@ -113,6 +137,33 @@ class Words {
   }
 
  private:
+  /// What is left of a line that the logger has ended, a host before the last word: what it counts can be held against
+  /// its length. Else nothing.
+  [[nodiscard]] std::vector<std::string_view> ended_words(std::size_t others) const {
+    std::vector<std::string_view> words;
+    for (Words left = *this; !left.at_end();) words.push_back(left.word("word"));
+    if (words.size() < others + kTimesWords || number_in(words[words.size() - 2])) words.clear();
+    return words;
+  }
+
+  /// `largest`: of the words that may stand there in place of a stamp.
+  static bool is_stamp_before_host(const std::vector<std::string_view>& words, double largest) {
+    const auto before_host = number_in(words[words.size() - 3]);
+    return !before_host || std::abs(*before_host) > largest;
+  }
+
+  [[noreturn]] void refuse_count(std::size_t announced, const char* what, std::size_t there) const {
+    refuse(counted(announced, what) + " announced, " + std::to_string(there) + " there");
+  }
+
+  static std::optional<std::size_t> count_in(std::string_view word) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool is_count =
+        error == std::errc{} && end == word.data() + word.size() && value >= 0 && value <= kMaxReadings;
+    return is_count ? std::optional{static_cast<std::size_t>(value)} : std::nullopt;
+  }
+
   static std::optional<double> number_in(std::string_view word) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -156,6 +207,7 @@ class Words {
 
   std::string_view text_;
   std::string place_;
+  HeadingUnit headings_;
 };
 
 void read_ranges(Words& words, int count, CarmenScan& scan) {
@@ -180,6 +232,12 @@ void guess_bearings(CarmenScan& scan) {
   scan.bearing_step_rad = field_rad / static_cast<double>(steps);
 }
 
+CarmenPoses read_poses(Words& words) {
+  const Words::Posed laser = words.pose("laser pose");
+  const Words::Posed robot = words.pose("robot pose");
+  return {laser.pose, robot.pose, robot.heading};
+}
+
 CarmenScan read_flaser(Words& words) {
   CarmenScan scan;
   const int count = words.count("number of ranges");
@@ -187,16 +245,13 @@ CarmenScan read_flaser(Words& words) {
   words.require_count(count, kPoseWords);
   read_ranges(words, count, scan);
   guess_bearings(scan);
-  CarmenPoses poses;
-  poses.odom_from_laser = words.pose("laser pose");
-  poses.odom_from_robot = words.pose("robot pose");
-  scan.poses = poses;
+  scan.poses = read_poses(words);
   scan.times = words.times();
   return scan;
 }
 
-/// The part that RAWLASER1 and ROBOTLASER1 share: configuration, ranges, remissions.
-CarmenScan read_configured_scan(Words& words) {
+/// The part that RAWLASER1 and ROBOTLASER1 share: configuration, ranges, remissions. `words_after`: up to the stamp.
+CarmenScan read_configured_scan(Words& words, std::size_t words_after) {
   CarmenScan scan;
   (void)words.finite("laser type");
   scan.first_bearing_rad = words.finite("start angle");
@@ -211,6 +266,7 @@ CarmenScan read_configured_scan(Words& words) {
   if (!(scan.bearing_step_rad > 0.0) || scan.bearing_step_rad * (count - 1) > 2.0 * std::numbers::pi + 0.01) {
     words.refuse("'angular resolution' does not fit " + std::to_string(count) + " ranges");
   }
+  words.require_counts(count, words_after);
   read_ranges(words, count, scan);
   const int remissions = words.count("number of remissions");
   for (int i = 0; i < remissions; ++i) (void)words.number("remission");
@@ -218,17 +274,14 @@ CarmenScan read_configured_scan(Words& words) {
 }
 
 CarmenScan read_rawlaser(Words& words) {
-  CarmenScan scan = read_configured_scan(words);
+  CarmenScan scan = read_configured_scan(words, 0);
   scan.times = words.times();
   return scan;
 }
 
 CarmenScan read_robotlaser(Words& words) {
-  CarmenScan scan = read_configured_scan(words);
-  CarmenPoses poses;
-  poses.odom_from_laser = words.pose("laser pose");
-  poses.odom_from_robot = words.pose("robot pose");
-  scan.poses = poses;
+  CarmenScan scan = read_configured_scan(words, kPoseWords + kMotionWords);
+  scan.poses = read_poses(words);
   for (const char* name : {"tv", "rv", "forward safety", "side safety", "turn axis"}) (void)words.number(name);
   scan.times = words.times();
   return scan;
@@ -236,7 +289,9 @@ CarmenScan read_robotlaser(Words& words) {
 
 CarmenOdometry read_odometry(Words& words) {
   CarmenOdometry odometry;
-  odometry.odom_from_robot = words.pose("pose");
+  const Words::Posed robot = words.pose("pose");
+  odometry.odom_from_robot = robot.pose;
+  odometry.heading = robot.heading;
   odometry.speed_m_per_s = words.finite("tv");
   odometry.turn_rate_rad_per_s = words.finite("rv");
   (void)words.number("acceleration");
@@ -256,9 +311,9 @@ std::optional<CarmenRecord> read_record(std::string_view kind, Words& words) {
 
 std::string_view kind_of(std::string_view line) { return line.substr(0, line.find_first_of(" \t\r")); }
 
-std::optional<CarmenRecord> record_in(std::string_view line, const std::string& place) {
+std::optional<CarmenRecord> record_in(std::string_view line, const std::string& place, HeadingUnit headings) {
   const std::string_view kind = kind_of(line);
-  Words words{line.substr(kind.size()), place};
+  Words words{line.substr(kind.size()), place, headings};
   auto record = read_record(kind, words);
   if (record) words.require_end();
   return record;

@@ -32,10 +32,14 @@ struct CarmenClock {
   [[nodiscard]] Timestamp time_of(const CarmenTimes& times) const;
 };
 
+/// CARMEN has radians; some who write its logs have degrees.
+enum class HeadingUnit { kRadian, kDegree };
+
 /// The two poses that a scan line carries, both in the frame of the odometry (or of the map, in a corrected log).
 struct CarmenPoses {
   Pose2 odom_from_laser;
   Pose2 odom_from_robot;
+  double robot_heading = 0.0;  ///< as logged: neither wrapped nor in a known unit
 };
 
 /// Value i points to first_bearing_rad + i · bearing_step_rad in the laser's frame.
@@ -58,6 +62,7 @@ struct CarmenOdometry {
   CarmenTimes times;
   Timestamp time;  ///< by the clock of the log
   Pose2 odom_from_robot;
+  double heading = 0.0;  ///< as logged: neither wrapped nor in a known unit
   double speed_m_per_s = 0.0;
   double turn_rate_rad_per_s = 0.0;
 };
@@ -68,7 +73,8 @@ using CarmenRecord = std::variant<CarmenOdometry, CarmenScan>;
 [[nodiscard]] std::string_view kind_of(std::string_view line);
 
 /// Nothing where the line is of another kind. Throws std::runtime_error "PLACE: why" where it is broken: words that are
-/// no numbers, counts that do not fit, headings that are none, an end that is missing.
-[[nodiscard]] std::optional<CarmenRecord> record_in(std::string_view line, const std::string& place);
+/// no numbers, counts that do not fit, headings that are none, an end that is missing. `headings`: what the line has.
+[[nodiscard]] std::optional<CarmenRecord> record_in(std::string_view line, const std::string& place,
+                                                    HeadingUnit headings = HeadingUnit::kRadian);
 
 }  // namespace deltamap::drivers::carmen

@@ -25,7 +25,8 @@ constexpr std::array kTimeWords{"time stamp", "host", "logger time"};
 
 }  // namespace
 
-CarmenLog::CarmenLog(std::filesystem::path file, const CarmenClock& clock) : file_{std::move(file)}, clock_{clock} {
+CarmenLog::CarmenLog(std::filesystem::path file, const CarmenClock& clock, HeadingUnit headings)
+    : file_{std::move(file)}, clock_{clock}, headings_{headings} {
   if (std::filesystem::is_directory(file_)) refuse_file(file_, "is a directory");
   in_.open(file_, std::ios::binary);
   if (!in_) refuse_file(file_, std::generic_category().message(errno));
@@ -62,7 +63,7 @@ bool CarmenLog::read_line() {
 std::optional<CarmenRecord> CarmenLog::record_of_line() {
   const std::string place = file_.string() + ":" + std::to_string(line_);
   if (!is_text_) throw std::runtime_error(place + ": not a CARMEN log (not text)");
-  auto record = record_in(text_, place);
+  auto record = record_in(text_, place, headings_);
   if (!record) {
     look_at_other(text_);
     return std::nullopt;

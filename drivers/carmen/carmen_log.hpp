@@ -31,7 +31,8 @@ struct CarmenFaults {
 class CarmenLog {
  public:
   /// Throws std::runtime_error naming the file where it is missing, empty, compressed, a CARMEN map or a folder.
-  explicit CarmenLog(std::filesystem::path file, const CarmenClock& clock = {});
+  explicit CarmenLog(std::filesystem::path file, const CarmenClock& clock = {},
+                     HeadingUnit headings = HeadingUnit::kRadian);
 
   /// The next scan or pose; nothing at the end. Throws std::runtime_error "FILE:LINE: why" at the end of a file that
   /// held no record at all.
@@ -67,6 +68,7 @@ class CarmenLog {
   std::vector<std::string> broken_since_record_;  // the first of the lines behind the last record
   std::size_t lines_since_record_ = 0;            // broken ones
   bool is_over_ = false;
+  HeadingUnit headings_;
   std::size_t line_ = 0;
   std::size_t records_ = 0;
   std::uint64_t size_bytes_ = 0;

@@ -11,6 +11,7 @@
 
 #include "core/geometry/angle.hpp"
 #include "drivers/carmen/carmen_doubts.hpp"
+#include "drivers/carmen/carmen_headings.hpp"
 #include "drivers/carmen/carmen_words.hpp"
 
 namespace deltamap::drivers::carmen {
@@ -120,7 +121,7 @@ void add_scan(CarmenSurvey& survey, Gathered& gathered, const CarmenScan& scan) 
 /// Poses without the log's resets, by time where they are ODOM lines; and what is told of the whole log.
 void conclude(CarmenSurvey& survey, const Gathered& gathered, const CarmenFaults& faults) {
   survey.robot_from_laser = gathered.doubts.robot_from_laser();
-  survey.notes = gathered.doubts.lines(faults);
+  for (std::string& line : gathered.doubts.lines(faults)) survey.notes.push_back(std::move(line));
   if (!survey.no_clock.empty()) return;
   survey.drive_notes = faults.clock;
   survey.resets = resets_in(gathered.poses);
@@ -171,14 +172,27 @@ class ClockCensus {
   std::size_t same_logger_ = 0;
 };
 
-void find_clock(CarmenSurvey& survey, const std::filesystem::path& log) {
+/// How the log is to be read: by which clock, and in which unit its headings are. Those that are imported count.
+void find_dialect(CarmenSurvey& survey, const std::filesystem::path& log) {
   CarmenLog lines{log};
-  ClockCensus census;
+  ClockCensus clock;
+  HeadingCensus of_scans;
+  HeadingCensus of_odometry;
+  bool scans_carry_poses = false;
   while (const auto record = lines.next()) {
-    std::visit([&](const auto& held) { census.add(held.times, std::is_same_v<decltype(held), const CarmenScan&>); },
+    std::visit([&](const auto& held) { clock.add(held.times, std::is_same_v<decltype(held), const CarmenScan&>); },
                *record);
+    if (const auto* odometry = std::get_if<CarmenOdometry>(&*record)) {
+      of_odometry.add(odometry->line, odometry->odom_from_robot.position(), odometry->heading);
+    } else if (const auto& scan = std::get<CarmenScan>(*record); scan.poses) {
+      scans_carry_poses = true;
+      of_scans.add(scan.line, scan.poses->odom_from_robot.position(), scan.poses->robot_heading);
+    }
   }
-  census.choose(survey);
+  clock.choose(survey);
+  const HeadingCensus& headings = scans_carry_poses ? of_scans : of_odometry;
+  survey.headings = headings.unit();
+  if (std::string line = headings.line(); !line.empty()) survey.notes.push_back(std::move(line));
 }
 
 }  // namespace
@@ -199,8 +213,8 @@ ScanVariant nearest_variant(const CarmenScan& scan) {
 CarmenSurvey survey_of(const std::filesystem::path& log, std::optional<double> no_return_m,
                        const std::function<void(std::uint64_t read, std::uint64_t total)>& tell_bytes) {
   CarmenSurvey survey;
-  find_clock(survey, log);
-  CarmenLog lines{log, survey.clock};
+  find_dialect(survey, log);
+  CarmenLog lines{log, survey.clock, survey.headings};
   Gathered gathered;
   while (const auto record = lines.next()) {
     if (tell_bytes) tell_bytes(lines.read_bytes(), lines.size_bytes());

@@ -32,6 +32,7 @@ struct CarmenSurvey {
   bool scans_carry_poses = false;
   std::vector<TimedPose> odometry;  ///< by time; empty where the scans carry poses
   CarmenClock clock;
+  HeadingUnit headings = HeadingUnit::kRadian;
   std::string no_clock;                   ///< why no time of the log can be used; empty where one can
   std::optional<std::string> cut;         ///< where the log was cut: one line
   std::vector<OdometryReset> resets;      ///< of the poses that are imported

@@ -42,7 +42,7 @@ struct Bounds {
 template <typename Visit>
 std::size_t for_each_beam(const fs::path& log, const drivers::carmen::CarmenSurvey& survey, const std::string& doing,
                           Visit&& visit) {
-  drivers::carmen::CarmenLog lines{log, survey.clock};
+  drivers::carmen::CarmenLog lines{log, survey.clock, survey.headings};
   Progress progress{doing + " " + log.filename().string(), lines.size_bytes()};
   std::size_t scans = 0;
   while (const auto record = lines.next()) {

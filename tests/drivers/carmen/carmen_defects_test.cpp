@@ -55,11 +55,13 @@ struct Line {
   double stamp_s = 0.0;
   double logger_s = 0.0;
   std::string before{};  ///< lines
+  std::function<double(const Pose2&)> heading_of = [](const Pose2& pose) { return pose.theta; };
   [[nodiscard]] std::string flaser() const {
     std::string line = "FLASER " + std::to_string(announced);
     for (const std::string& range : ranges) line += " " + range;
-    return line + text(robot * robot_from_laser) + text(robot) + text(" %.6f", stamp_s) + " host" +
-           text(" %.6f", logger_s);
+    for (const Pose2& pose : {robot * robot_from_laser, robot})
+      line += text(" %.3f", pose.x) + text(" %.3f", pose.y) + text(" %.4f", heading_of(pose));
+    return line + text(" %.6f", stamp_s) + " host" + text(" %.6f", logger_s);
   }
 };
 
@@ -151,7 +153,7 @@ std::vector<Defect> defects() {
        }),
        "the log's clock was set back 1 time "},
       {"a clock set back by a little", with_all_from([](Line& line) { line.stamp_s -= 0.5; }),
-       "repeat the time stamp of the scan before"},
+       " the time stamp of the scan before"},
       {"a wrong stamp", with_line([](Line& line) { line.stamp_s = 12.0; }), "the log's clock was set back 1 time "},
       {"a repeated stamp", with_line([](Line& line) { line.stamp_s -= kStep_s; }),
        "1 scan repeats the time stamp of the scan before"},
@@ -200,7 +202,7 @@ class CarmenDefects : public testing::Test {
   }
   /// Times go on, and the robot drives as it did.
   void expect_one_drive() {
-    CarmenLog lines{file_, survey_.clock};
+    CarmenLog lines{file_, survey_.clock, survey_.headings};
     std::optional<TimedPose> last;
     std::size_t scans = 0;
     while (const auto record = lines.next()) {
@@ -278,6 +280,68 @@ TEST_F(CarmenDefects, AMountThatALogOfCorrectedPosesDoesNotTell) {
   EXPECT_TRUE(tells("it does not tell the mount")) << all_told();
 }
 
+/// The same poses with headings as a log has them whose writer took degrees.
+std::vector<Line> in_degrees(std::vector<Line> lines, const std::function<double(const Pose2&)>& heading_deg) {
+  for (Line& line : lines) line.heading_of = heading_deg;
+  return lines;
+}
+
+TEST_F(CarmenDefects, HeadingsInDegreesAreReadAndNamed) {
+  const auto wrapped = [](const Pose2& pose) { return degrees(pose.theta); };
+  const auto positive = [](const Pose2& pose) {
+    return pose.theta < 0.0 ? degrees(pose.theta) + 360.0 : degrees(pose.theta);
+  };
+  const Pose2 mount{0.1, 0.0, 0.0};
+  for (const double turned : {0.0, 0.05, 1.6, 3.0, -2.0}) {
+    for (const auto& heading_deg : {std::function<double(const Pose2&)>{wrapped}, {positive}}) {
+      SCOPED_TRACE(turned);
+      std::vector<Line> lines = drawn_lines(mount);
+      for (Line& line : lines) line.robot = Pose2{0.0, 0.0, turned} * line.robot;
+      look(log_of(in_degrees(lines, heading_deg)));
+      EXPECT_EQ(survey_.headings, HeadingUnit::kDegree);
+      EXPECT_TRUE(tells("headings look like degrees (the first ")) << all_told();
+      EXPECT_TRUE(tells("the log has the laser at 0.100, 0.000 m, 0.0°")) << all_told();
+      EXPECT_EQ(told_.size(), 2u) << all_told();
+      expect_one_drive();
+    }
+  }
+}
+
+TEST_F(CarmenDefects, HeadingsInDegreesOfARobotThatTurnsOnTheSpotAreRead) {
+  std::vector<Line> lines = drawn_lines();
+  for (std::size_t i = 0; i < lines.size(); ++i) lines[i].robot = {1.0, 2.0, 0.2 * static_cast<double>(i)};
+  look(log_of(in_degrees(lines, [](const Pose2& pose) { return degrees(wrapped_angle(pose.theta)); })));
+  EXPECT_TRUE(tells("headings look like degrees (the first beyond a turn in line 3)")) << all_told();
+}
+
+TEST_F(CarmenDefects, HeadingsThatMayBeDegreesAreDoubted) {
+  std::vector<Line> lines = drawn_lines();
+  for (Line& line : lines) line.robot = {1.0, 2.0, 1.5};
+  look(log_of(in_degrees(lines, [](const Pose2& pose) { return degrees(pose.theta); })));
+  EXPECT_EQ(survey_.headings, HeadingUnit::kRadian);
+  EXPECT_TRUE(tells("headings of up to 85.94 (the first beyond a turn in line 2)")) << all_told();
+}
+
+TEST_F(CarmenDefects, HeadingsInRadiansThatAreNotWrappedAreNoDegrees) {
+  std::vector<Line> lines = drawn_lines();
+  Pose2 robot{1.0, 1.0, 0.0};
+  for (std::size_t i = 0; i < lines.size(); ++i) {  // round and round
+    lines[i].robot = robot;
+    lines[i].heading_of = [turned = 0.8 * static_cast<double>(i)](const Pose2&) { return turned; };
+    robot = robot * Pose2{0.0, 0.0, 0.4} * Pose2{0.12, 0.0, 0.4};
+  }
+  look(log_of(lines));
+  EXPECT_EQ(survey_.headings, HeadingUnit::kRadian);
+  EXPECT_FALSE(tells("degrees")) << all_told();
+}
+
+TEST_F(CarmenDefects, AFrameThatIsTurnedAgainstTheHeadingsMakesThemNoDegrees) {
+  std::vector<Line> lines = drawn_lines();
+  for (Line& line : lines) line.robot = {line.robot.x, 2.0, 1.57};
+  look(log_of(lines));
+  EXPECT_FALSE(tells("degrees")) << all_told();
+}
+
 TEST_F(CarmenDefects, RangesInMillimetresAreDoubted) {
   std::vector<Line> lines = drawn_lines();
   for (Line& line : lines) {
@@ -297,6 +361,62 @@ TEST_F(CarmenDefects, AMiscountInEveryLineIsRefusedByItsLine) {
     EXPECT_NE(std::string(error.what()).find("drawn.log:2: 181 ranges announced, 180 there"), std::string::npos)
         << error.what();
   }
+}
+
+/// A scan as ROBOTLASER1 or RAWLASER1, `remissions` of them announced and `there` there.
+std::string configured_line(const Line& line, bool has_poses, std::size_t remissions, std::size_t there) {
+  std::string all = std::string(has_poses ? "ROBOTLASER1" : "RAWLASER1") +
+                    " 0 -1.570796 3.141593 0.017453 81.9 0.01 0 " + std::to_string(line.announced);
+  for (const std::string& range : line.ranges) all += " " + range;
+  all += " " + std::to_string(remissions);
+  for (std::size_t i = 0; i < there; ++i) all += " " + std::to_string(17 * i % 211);
+  if (has_poses) all += text(line.robot) + text(line.robot) + " 0.3 0 0.5 0.5 1000000";
+  return all + text(" %.6f", line.stamp_s) + " host" + text(" %.6f\n", line.logger_s);
+}
+
+TEST_F(CarmenDefects, AMiscountOfRobotlaserAndRawlaserCostsItsLineAlone) {
+  for (const bool has_poses : {true, false}) {
+    for (const std::size_t remissions : {0U, 181U}) {
+      for (const int more : {-3, -1, 1, 2}) {
+        for (const std::size_t at : {0U, 7U, 39U}) {  // the first robot pose is 0 0 0, its words are counts, too
+          SCOPED_TRACE("line " + std::to_string(at + 1) + " has " + std::to_string(more) + " ranges more");
+          std::string log;
+          std::vector<Line> lines = drawn_lines();
+          for (Line& line : lines) line.robot = inverse(truth(0)) * line.robot;
+          lines[at].ranges.resize(static_cast<std::size_t>(181 + more), "0");
+          for (const Line& line : lines) log += configured_line(line, has_poses, remissions, remissions);
+          look(log);
+          EXPECT_TRUE(tells("drawn.log:" + std::to_string(at + 1) + ": 181 ranges announced, " +
+                            std::to_string(181 + more) + " there"))
+              << all_told();
+          EXPECT_EQ(survey_.scans, static_cast<std::size_t>(kScans - 1));
+          EXPECT_FALSE(survey_.clock.by_logger);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(CarmenDefects, AMiscountOfRemissionsCostsItsLineAlone) {
+  for (const std::size_t there : {178U, 180U, 182U}) {
+    std::string log;
+    const std::vector<Line> lines = drawn_lines();
+    for (std::size_t i = 0; i < lines.size(); ++i) log += configured_line(lines[i], true, 181, i == 5 ? there : 181);
+    look(log);
+    EXPECT_TRUE(tells("drawn.log:6: 181 remissions announced, " + std::to_string(there) + " there")) << all_told();
+    EXPECT_EQ(survey_.scans, static_cast<std::size_t>(kScans - 1));
+  }
+}
+
+TEST_F(CarmenDefects, RobotlaserWithoutAStampIsNoMiscount) {
+  std::string log;
+  for (const Line& line : drawn_lines()) {
+    std::string one = configured_line(line, true, 0, 0);
+    log += one.erase(one.find(text(" %.6f", line.stamp_s)), text(" %.6f", line.stamp_s).size());
+  }
+  look(log);
+  EXPECT_EQ(survey_.scans, static_cast<std::size_t>(kScans));
+  EXPECT_TRUE(survey_.clock.by_logger);
 }
 
 TEST_F(CarmenDefects, WhatStandsApartOrIsOneValueIsNoReturn) {
