@@ -106,10 +106,7 @@ void print_import_text(const CarmenImport& done, const std::string& recording) {
             << pose_source(survey) << '\n';
   if (const std::string line = drivers::carmen::no_return_line(survey); !line.empty()) std::cout << line << '\n';
   if (survey.clock.by_logger) std::cout << "times: the logger's, since the time stamps do not tell the scans apart\n";
-  if (survey.doubled_scans > 0) {
-    std::cout << counted(survey.doubled_scans, "scan")
-              << " without a pose left out: the log's other scans carry poses\n";
-  }
+  if (survey.doubled_scans > 0) std::cout << drivers::carmen::doubled_line(survey) << '\n';
   if (pose_source(survey) == "none") std::cout << "the log has no pose: the robot is taken to stand still\n";
   for (const auto* notes : {&survey.notes, &survey.drive_notes}) {
     for (const std::string& note : *notes) std::cout << note << '\n';

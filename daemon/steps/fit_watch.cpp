@@ -18,6 +18,7 @@ constexpr localization::belief::FitParams kJudged{};  // the defaults of localiz
 // A pose that is not sure for so long and so far is reported: a search, or a person in the way, takes less.
 constexpr double kLong_s = 60.0;
 constexpr double kFar_m = 10.0;
+constexpr double kLongestGap_s = 10.0;  // between scans; in longer ones nothing was looked at, or a clock was set
 
 const std::string kSayWhere = "say where the robot stands by `deltamap ctl relocalize X,Y,DEG`";
 
@@ -55,8 +56,9 @@ LogLine FitWatch::observe(const TrackedScan& tracked, const Seen& seen) {
   if (LogLine scale = judged_scale(seen.scale); !scale.text.empty()) return scale;
   const bool is_unfit =
       tracked.estimate.state != LocalizerState::kTracking || mean_fit_.value_or(1.0) < kJudged.lost_below;
-  unfit_s_ = is_unfit ? unfit_s_ + passed_s_ : 0.0;
-  unfit_m_ = is_unfit ? unfit_m_ + driven_m_ : 0.0;
+  const bool was_seen = passed_s_ <= kLongestGap_s;
+  unfit_s_ = is_unfit ? unfit_s_ + (was_seen ? passed_s_ : 0.0) : 0.0;
+  unfit_m_ = is_unfit ? unfit_m_ + (was_seen ? driven_m_ : 0.0) : 0.0;
   return judged_long(tracked.estimate.state);
 }
 

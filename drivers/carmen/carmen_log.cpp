@@ -147,7 +147,8 @@ std::optional<CarmenRecord> CarmenLog::next() {
 
 CarmenFaults CarmenLog::faults() const {
   CarmenFaults faults = faults_;
-  faults.clock = timeline_.notes();
+  faults.clock = timeline_.clock_notes();
+  faults.repeats = timeline_.repeat_notes();
   return faults;
 }
 

@@ -24,8 +24,9 @@ struct CarmenFaults {
   std::size_t broken_lines = 0;
   std::vector<std::string> broken;                         ///< the first of them: "FILE:LINE: why"
   std::map<std::string, std::size_t, std::less<>> others;  ///< lines of other lasers by kind
-  std::optional<double> stated_offset_m;                   ///< the log's robot_frontlaser_offset
-  std::vector<std::string> clock;                          ///< carmen_timeline.hpp: one line each
+  StatedMount stated_mount;
+  std::vector<std::string> clock;    ///< steps of the log's clock, one line each
+  std::vector<std::string> repeats;  ///< scans that repeat a stamp, one line each
 };
 
 class CarmenLog {

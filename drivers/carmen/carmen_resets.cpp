@@ -60,6 +60,10 @@ bool is_reset(const Step& before, const Step& step, const Step& after, bool lead
                  beside([](const Step& one) { return one.turn_rate_rad_per_s(); }), more * kJumpTurn_rad_per_s);
 }
 
+std::string times_from(std::span<const OdometryReset> resets) {
+  return counted(resets.size(), "time") + " (the first in line " + std::to_string(resets.front().line) + ")";
+}
+
 }  // namespace
 
 std::vector<OdometryReset> resets_in(std::span<const LoggedPose> poses) {
@@ -87,8 +91,14 @@ Pose2 without_resets(std::span<const OdometryReset> resets, std::size_t line, co
 
 std::string resets_line(std::span<const OdometryReset> resets) {
   if (resets.empty()) return "";
-  return "the odometry jumps " + counted(resets.size(), "time") + " (the first in line " +
-         std::to_string(resets.front().line) + "), as at a reset: no drive, its poses go on from where they were";
+  return "the odometry jumps " + times_from(resets) + ", as at a reset: no drive, its poses go on from where they were";
+}
+
+std::string laser_jumps_line(std::span<const OdometryReset> jumps) {
+  if (jumps.empty()) return "";
+  return "the laser's pose jumps " + times_from(jumps) +
+         ", farther than a robot drives between two scans: the map is drawn at the poses as they are; are they of one "
+         "frame, and corrected?";
 }
 
 }  // namespace deltamap::drivers::carmen

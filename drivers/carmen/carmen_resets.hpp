@@ -33,5 +33,7 @@ struct OdometryReset {
 
 /// One line; "" without resets.
 [[nodiscard]] std::string resets_line(std::span<const OdometryReset> resets);
+/// One line of the laser's poses, which a map is drawn at as they are; "" without jumps.
+[[nodiscard]] std::string laser_jumps_line(std::span<const OdometryReset> jumps);
 
 }  // namespace deltamap::drivers::carmen

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/counted.hpp"
 #include "core/geometry/angle.hpp"
 #include "drivers/carmen/carmen_doubts.hpp"
 #include "drivers/carmen/carmen_headings.hpp"
@@ -96,6 +97,7 @@ struct Gathered {
   RangeCensus census{};
   CarmenDoubts doubts{};
   std::vector<LoggedPose> poses{};
+  std::vector<LoggedPose> laser_poses{};
 };
 
 void add_scan(CarmenSurvey& survey, Gathered& gathered, const CarmenScan& scan) {
@@ -114,7 +116,10 @@ void add_scan(CarmenSurvey& survey, Gathered& gathered, const CarmenScan& scan) 
   if (survey.scans == 0) survey.variant = nearest_variant(scan);
   ++survey.scans;
   gathered.doubts.add(scan);
-  if (scan.poses) gathered.poses.push_back({scan.line, scan.time, scan.poses->odom_from_robot});
+  if (scan.poses) {
+    gathered.poses.push_back({scan.line, scan.time, scan.poses->odom_from_robot});
+    gathered.laser_poses.push_back({scan.line, scan.time, scan.poses->odom_from_laser});
+  }
   for (const double range_m : scan.ranges_m) gathered.census.add(range_m);
 }
 
@@ -122,8 +127,12 @@ void add_scan(CarmenSurvey& survey, Gathered& gathered, const CarmenScan& scan) 
 void conclude(CarmenSurvey& survey, const Gathered& gathered, const CarmenFaults& faults) {
   survey.robot_from_laser = gathered.doubts.robot_from_laser();
   for (std::string& line : gathered.doubts.lines(faults)) survey.notes.push_back(std::move(line));
+  const auto jumps = resets_in(gathered.laser_poses);
+  if (survey.no_clock.empty()) survey.map_notes = faults.clock;
+  if (std::string line = laser_jumps_line(jumps); !line.empty()) survey.map_notes.push_back(std::move(line));
   if (!survey.no_clock.empty()) return;
   survey.drive_notes = faults.clock;
+  survey.drive_notes.insert(survey.drive_notes.end(), faults.repeats.begin(), faults.repeats.end());
   survey.resets = resets_in(gathered.poses);
   if (std::string line = resets_line(survey.resets); !line.empty()) survey.drive_notes.push_back(std::move(line));
   if (survey.scans_carry_poses) return;
@@ -237,6 +246,10 @@ CarmenSurvey survey_of(const std::filesystem::path& log, std::optional<double> n
     census.find_no_return(survey);
   }
   return survey;
+}
+
+std::string doubled_line(const CarmenSurvey& survey) {
+  return counted(survey.doubled_scans, "scan") + " without a pose left out: the log's other scans carry poses";
 }
 
 std::string no_return_line(const CarmenSurvey& survey) {

@@ -38,7 +38,8 @@ struct CarmenSurvey {
   std::vector<OdometryReset> resets;      ///< of the poses that are imported
   std::optional<Pose2> robot_from_laser;  ///< the mount that the log's scan lines have
   std::vector<std::string> notes;         ///< what is left out, filled in or doubted, one line each
-  std::vector<std::string> drive_notes;   ///< the same of times and odometry, which only an import looks at
+  std::vector<std::string> drive_notes;   ///< the same of times and odometry, for an import
+  std::vector<std::string> map_notes;     ///< the same of times and laser poses, for a map that is drawn at these
 
   drivers::lms200::Units units = drivers::lms200::Units::kMillimetre;
   std::uint8_t measuring_mode = 0;                 ///< protocols.md B4: the one whose codes hold the longest word
@@ -57,6 +58,8 @@ struct CarmenSurvey {
     const std::filesystem::path& log, std::optional<double> no_return_m,
     const std::function<void(std::uint64_t read, std::uint64_t total)>& tell_bytes = {});
 
+/// What is printed of scans without a pose that are left out.
+[[nodiscard]] std::string doubled_line(const CarmenSurvey& survey);
 /// What is printed about it; "" where no value of the log is taken for no return.
 [[nodiscard]] std::string no_return_line(const CarmenSurvey& survey);
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The times of a log's records one after another: where its clock was set back they go on, and scans that repeat a
-// stamp are set apart by the logger's own times, where it has them.
+// The times of a log's records one after another: where its clock was set back, or set forward by the logger's own
+// times, they go on, and scans that repeat a stamp are set apart by the logger's times, where it has them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/time.hpp"
@@ -31,14 +33,22 @@ class CarmenTimeline {
   [[nodiscard]] Placed place(Timestamp told, const CarmenTimes& times, const std::optional<ScanKind>& scan,
                              std::size_t line);
 
-  /// One line for each kind of step that was met.
-  [[nodiscard]] std::vector<std::string> notes() const;
+  /// One line for each kind of step of the clock that was met.
+  [[nodiscard]] std::vector<std::string> clock_notes() const;
+  /// One line each for scans that were set apart and for those that are left out.
+  [[nodiscard]] std::vector<std::string> repeat_notes() const;
 
  private:
   struct Seen {
     std::size_t count = 0;
     std::size_t first_line = 0;
-    void add(std::size_t line) { first_line = count++ == 0 ? line : first_line; }
+    Duration farthest{0};
+    void add(std::size_t line, Duration far = Duration{0}) {
+      first_line = count++ == 0 ? line : first_line;
+      farthest = std::max(farthest, far);
+    }
+    /// "2 times (the first in line 7), by up to 3600 s"
+    [[nodiscard]] std::string words() const;
   };
   void take_steps_out(Timestamp told, const CarmenTimes& times, std::size_t line);
   struct LastScan {
@@ -46,15 +56,20 @@ class CarmenTimeline {
     std::optional<Duration> logger;
     std::string kind;
   };
+  /// Since the record before, by the logger's times; nothing where these do not go on.
+  [[nodiscard]] std::optional<Duration> passed_by_logger(const CarmenTimes& times) const;
+  [[nodiscard]] bool has_steady_logger() const;
   [[nodiscard]] static Duration since(const LastScan& last, const CarmenTimes& times, const ScanKind& scan);
 
   Duration shift_{0};
   Duration shift_before_{0};
   std::optional<Timestamp> newest_;
-  std::array<std::optional<LastScan>, 2> last_scans_;  // without poses, with poses
-  std::optional<Duration> last_logger_;                // of the last record
+  std::array<std::optional<LastScan>, 2> last_scans_;    // without poses, with poses
+  std::optional<Duration> last_logger_;                  // of the last record
+  std::optional<std::pair<Timestamp, Duration>> began_;  // by stamp and by logger: of the first record with both
   Seen set_back_;
-  Duration farthest_back_{0};
+  Seen set_forward_;
+  Seen stepped_on_;  // a pause, or a clock that was set
   Seen set_apart_;
   Seen repeated_;
 };

@@ -103,6 +103,13 @@ struct FromPosesOptions {
   bool json = false;
 };
 
+std::vector<std::string> notes_of(const MapFromPoses& made) {
+  std::vector<std::string> notes = made.survey.notes;
+  notes.insert(notes.end(), made.survey.map_notes.begin(), made.survey.map_notes.end());
+  if (made.survey.doubled_scans > 0) notes.push_back(drivers::carmen::doubled_line(made.survey));
+  return notes;
+}
+
 std::string as_json(const MapFromPoses& made, const std::string& yaml) {
   const auto& no_return_m = made.survey.no_return_m;
   return nlohmann::ordered_json{{"map", yaml},
@@ -115,7 +122,7 @@ std::string as_json(const MapFromPoses& made, const std::string& yaml) {
                                 {"free_cells", count_of(made.grid, CellState::kFree)},
                                 {"no_return_m", no_return_m ? nlohmann::ordered_json(*no_return_m) : nullptr},
                                 {"no_return_share", made.survey.no_return_share},
-                                {"notes", made.survey.notes}}
+                                {"notes", notes_of(made)}}
       .dump(2);
 }
 
@@ -125,7 +132,7 @@ void print(const MapFromPoses& made, const std::string& yaml) {
             << count_of(made.grid, CellState::kOccupied) << " occupied, " << count_of(made.grid, CellState::kFree)
             << " free\n";
   if (const std::string line = drivers::carmen::no_return_line(made.survey); !line.empty()) std::cout << line << '\n';
-  for (const std::string& note : made.survey.notes) std::cout << note << '\n';
+  for (const std::string& note : notes_of(made)) std::cout << note << '\n';
 }
 
 void run_from_poses(const FromPosesOptions& options) {

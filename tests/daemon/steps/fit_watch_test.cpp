@@ -33,6 +33,8 @@ class Watched {
     }
     return said;
   }
+  /// No scan comes, or a clock is set.
+  void skip(double duration_s) { tracked_.scan.time += duration_from_seconds(duration_s); }
   void call(PoseVerdict verdict) { tracked_.estimate.belief.verdict = verdict; }
   void relocalize() { watch_.relocalized(); }
   [[nodiscard]] bool start_fits() const { return watch_.start_fits(); }
@@ -144,6 +146,15 @@ TEST(FitWatch, ASearchThatNobodyDrivesForIsToldToo) {
   const std::string said = watched.after(60.0, std::nullopt, LocalizerState::kGlobal);
   EXPECT_EQ(said.rfind("warning: no place in the map has been sure for 60 s and 0 m: is it the map", 0), 0u) << said;
   EXPECT_EQ(watched.after(100.0, 0.2, LocalizerState::kTracking), "") << "one who stands in front of a sure pose";
+}
+
+TEST(FitWatch, AGapWithoutScansIsNoTimeInWhichNothingFits) {
+  Watched watched{false};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(watched.after(15.0, 0.2, LocalizerState::kGlobal), "");
+    watched.skip(1000001.0);
+  }
+  EXPECT_NE(watched.after(20.0, 0.2, LocalizerState::kGlobal).find("sure for 60 s"), std::string::npos);
 }
 
 TEST(FitWatch, APoseThatIsTrackedAndDoesNotFitForAMinuteIsToldToo) {

@@ -155,6 +155,12 @@ std::vector<Defect> defects() {
       {"a clock set back by a little", with_all_from([](Line& line) { line.stamp_s -= 0.5; }),
        " the time stamp of the scan before"},
       {"a wrong stamp", with_line([](Line& line) { line.stamp_s = 12.0; }), "the log's clock was set back 1 time "},
+      {"a clock set forward", with_all_from([](Line& line) { line.stamp_s += 1000001.0; }),
+       "the log's clock was set forward 1 time (the first in line "},
+      {"a clock set forward by two minutes", with_all_from([](Line& line) { line.stamp_s += 120.0; }),
+       "the log's clock was set forward 1 time (the first in line "},
+      {"a wrong stamp far ahead", with_line([](Line& line) { line.stamp_s += 1e6; }),
+       "the log's clock was set forward 1 time (the first in line "},
       {"a repeated stamp", with_line([](Line& line) { line.stamp_s -= kStep_s; }),
        "1 scan repeats the time stamp of the scan before"},
       {"a line twice", with_text([](const std::string& line) { return line + "\n" + line; }), "left out"},
@@ -236,6 +242,46 @@ TEST_F(CarmenDefects, AreTakenOutAndToldAtEveryPlace) {
       EXPECT_EQ(survey_.scans, defect.scans);
       expect_one_drive();
     }
+  }
+}
+
+TEST_F(CarmenDefects, ALongStepThatTheLoggerDoesNotTellFromAPauseIsKeptAndNamed) {
+  std::vector<Line> lines = drawn_lines();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    lines[i].logger_s = 0.0;
+    if (i >= 7) lines[i].stamp_s += 1000001.0;
+  }
+  look(log_of(lines));
+  EXPECT_TRUE(tells("the log's times step on 1 time (the first in line 9), by up to 1e+06 s: pauses, or a clock"))
+      << all_told();
+  for (std::size_t i = 7; i < lines.size(); ++i) lines[i].logger_s = 1000010.0 + static_cast<double>(i);
+  look(log_of(lines));
+  EXPECT_FALSE(tells("step on")) << "the logger has waited as long: " << all_told();
+}
+
+TEST_F(CarmenDefects, AStepIsAPauseWhereTheLoggersTimesDoNotRunAsTheStampsDo) {
+  std::vector<Line> lines = drawn_lines();  // played again, ten times as fast
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    lines[i].stamp_s = kStart_s + 2.0 * static_cast<double>(i) + (i >= 20 ? 90.0 : 0.0);
+    lines[i].logger_s = 2.0 + 0.2 * static_cast<double>(i) + (i >= 20 ? 9.0 : 0.0);
+  }
+  look(log_of(lines));
+  EXPECT_FALSE(tells("clock")) << all_told();
+}
+
+TEST_F(CarmenDefects, JumpsOfTheLasersPoseAndTheClockAreToldOfAMapFromPoses) {
+  for (int place = 1; place < kScans - 1; place += 2) {
+    std::vector<Line> lines = drawn_lines();
+    for (std::size_t i = static_cast<std::size_t>(place); i < lines.size(); ++i) {
+      lines[i].robot = Pose2{4.0, -2.0, 0.4} * lines[i].robot;
+      lines[i].stamp_s -= 3600.0;
+    }
+    look(log_of(lines));
+    const auto& notes = survey_.map_notes;
+    ASSERT_EQ(notes.size(), 2u) << place;
+    EXPECT_EQ(notes[0].find("the log's clock was set back 1 time (the first in line "), 0u) << notes[0];
+    EXPECT_EQ(notes[1].find("the laser's pose jumps 1 time (the first in line " + std::to_string(place + 2) + ")"), 0u)
+        << notes[1];
   }
 }
 
