@@ -15,8 +15,9 @@
 namespace deltamap::drivers::carmen {
 namespace {
 
-constexpr std::size_t kMaxLineBytes = 1u << 20;  // a scan of 361 values takes 3 kB
-constexpr std::size_t kMostToldLines = 3;        // of the broken ones; the others are counted
+constexpr std::size_t kMaxLineBytes = 1u << 20;              // a scan of 361 values takes 3 kB
+constexpr std::size_t kMostToldLines = 3;                    // of the broken ones; the others are counted
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8: some editors begin a text with it
 constexpr std::array kTimeWords{"time stamp", "host", "logger time"};
 
 [[noreturn]] void refuse_file(const std::filesystem::path& file, const std::string& why) {
@@ -55,9 +56,9 @@ bool CarmenLog::read_line() {
     is_text_ = is_text_ && next != '\0' && text_.size() < kMaxLineBytes;
     if (!is_ended_ && is_text_) text_ += static_cast<char>(next);
   }
-  const bool found = read_bytes_ > before;
-  if (found) ++line_;
-  return found;
+  if (read_bytes_ == before) return false;
+  if (++line_ == 1 && text_.starts_with(kByteOrderMark)) text_.erase(0, kByteOrderMark.size());
+  return true;
 }
 
 std::optional<CarmenRecord> CarmenLog::record_of_line() {

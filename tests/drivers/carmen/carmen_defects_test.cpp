@@ -285,6 +285,14 @@ TEST_F(CarmenDefects, JumpsOfTheLasersPoseAndTheClockAreToldOfAMapFromPoses) {
   }
 }
 
+TEST_F(CarmenDefects, AByteOrderMarkIsNoPartOfTheFirstLine) {
+  std::string log;
+  for (const Line& line : drawn_lines()) log += line.flaser() + "\n";
+  look("\xEF\xBB\xBF" + log);
+  EXPECT_EQ(survey_.scans, static_cast<std::size_t>(kScans));
+  EXPECT_EQ(told_.size(), 1u) << all_told();
+}
+
 TEST_F(CarmenDefects, SweepsThatALogHasAsTwoKindsAreImportedOnce) {
   std::vector<Line> lines = drawn_lines();
   for (Line& line : lines)
