@@ -2,6 +2,7 @@
 #include "drivers/carmen/carmen_doubts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -34,6 +35,25 @@ bool is_same_place(const Pose2& one, const Pose2& other) {
          std::abs(turn_between(one.theta, other.theta)) < kSameHeading_rad;
 }
 
+std::string words_of_mount(const Pose2& robot_from_laser) {
+  const double x_m = std::round(robot_from_laser.x * 1e3) / 1e3 + 0.0;
+  const double y_m = std::round(robot_from_laser.y * 1e3) / 1e3 + 0.0;
+  const double turned_deg = std::round(degrees(wrapped_angle(robot_from_laser.theta)) * 10.0) / 10.0 + 0.0;
+  const double yaw_deg = turned_deg <= -180.0 ? 180.0 : turned_deg;
+  char text[96];
+  (void)std::snprintf(text, sizeof text, "the log has the laser at %.3f, %.3f m, %.1f°", x_m, y_m, yaw_deg);
+  return std::string(text) + ": set laser.mount (--set laser.mount.x_m=" + shortest_text(x_m) +
+         " --set laser.mount.y_m=" + shortest_text(y_m) + " --set laser.mount.yaw_deg=" + shortest_text(yaw_deg) + ")";
+}
+
+/// The field of view of scanners that have so many values; nothing where none is known.
+std::optional<int> usual_field_deg(std::size_t values) {
+  constexpr std::array<std::size_t, 6> kOf270{271, 540, 541, 811, 1080, 1081};  // 1°, 0.5°, 0.333°, 0.25°
+  if (std::find(kOf270.begin(), kOf270.end(), values) != kOf270.end()) return 270;
+  if (values >= 681 && values <= 683) return 240;  // 360°/1024
+  return std::nullopt;
+}
+
 }  // namespace
 
 void CarmenDoubts::add_beams_of(const CarmenScan& scan) {
@@ -64,10 +84,7 @@ void CarmenDoubts::add_beams_of(const CarmenScan& scan) {
 void CarmenDoubts::add(const CarmenScan& scan) {
   add_beams_of(scan);
   not_numbers_ += scan.not_numbers;
-  if (scan.has_guessed_field) {
-    ++guessed_fields_;
-    guessed_values_ = scan.ranges_m.size();
-  }
+  if (scan.has_guessed_field) ++guessed_fields_[scan.ranges_m.size()];
   add_ranges_of(scan);
   if (scan.poses)
     mounts_.push_back({scan.line, motion_between(scan.poses->odom_from_robot, scan.poses->odom_from_laser)});
@@ -115,30 +132,27 @@ std::optional<Pose2> CarmenDoubts::robot_from_laser() const {
   return mount;
 }
 
-std::string CarmenDoubts::mount_line(const CarmenFaults& faults) const {
+std::string CarmenDoubts::mount_line(const StatedMount& stated) const {
   const auto mount = robot_from_laser();
-  const auto& offset_m = faults.stated_offset_m;
-  if (!mount && !mounts_.empty())
-    return "the log's laser and robot poses keep no place to each other (corrected poses?): it does not tell the mount";
-  if (!mount && !offset_m) return "";
-  const Pose2 told = mount.value_or(Pose2{offset_m.value_or(0.0), 0.0, 0.0});
-  const double x_m = std::round(told.x * 1e3) / 1e3 + 0.0;
-  const double y_m = std::round(told.y * 1e3) / 1e3 + 0.0;
-  const double turned_deg = std::round(degrees(told.theta) * 10.0) / 10.0 + 0.0;
-  const double yaw_deg = turned_deg <= -180.0 ? 180.0 : turned_deg;
-  char text[96];
-  (void)std::snprintf(text, sizeof text, "the log has the laser at %.3f, %.3f m, %.1f°", x_m, y_m, yaw_deg);
-  std::string line = std::string(text) + ": set laser.mount (--set laser.mount.x_m=" + shortest_text(x_m) +
-                     " --set laser.mount.y_m=" + shortest_text(y_m) +
-                     " --set laser.mount.yaw_deg=" + shortest_text(yaw_deg) + ")";
+  const std::string no_place =
+      mount || mounts_.empty() ? "" : "the log's laser and robot poses keep no place to each other (corrected poses?)";
+  if (!mount && !stated.is_given()) return no_place.empty() ? "" : no_place + ": it does not tell the mount";
+  const Pose2 told =
+      mount.value_or(Pose2{stated.x_m.value_or(0.0), stated.y_m.value_or(0.0), stated.yaw_rad.value_or(0.0)});
+  std::string line = words_of_mount(told);
+  if (!mount) return line + (no_place.empty() ? "" : "; that is what its PARAM lines say, " + no_place);
   const auto is_elsewhere = [&](const Mount& one) { return !is_same_place(one.robot_from_laser, told); };
   const auto elsewhere = static_cast<std::size_t>(std::count_if(mounts_.begin(), mounts_.end(), is_elsewhere));
   if (elsewhere > 0) {
     const auto first = std::find_if(mounts_.begin(), mounts_.end(), is_elsewhere);
     line += "; elsewhere in " + counted(elsewhere, "scan") + " (the first in line " + std::to_string(first->line) + ")";
   }
-  if (mount && offset_m && std::abs(*offset_m - mount->x) > kSamePlace_m)
-    line += "; its robot_frontlaser_offset says " + rounded(*offset_m, 1e4) + " m";
+  if (stated.x_m && std::abs(*stated.x_m - told.x) > kSamePlace_m)
+    line += "; its robot_frontlaser_offset says " + rounded(*stated.x_m, 1e4) + " m";
+  if (stated.y_m && std::abs(*stated.y_m - told.y) > kSamePlace_m)
+    line += "; its robot_frontlaser_side_offset says " + rounded(*stated.y_m, 1e4) + " m";
+  if (stated.yaw_rad && std::abs(turn_between(*stated.yaw_rad, told.theta)) > kSameHeading_rad)
+    line += "; its robot_frontlaser_angular_offset says " + rounded(degrees(*stated.yaw_rad), 10.0) + "°";
   return line;
 }
 
@@ -158,9 +172,11 @@ std::vector<std::string> CarmenDoubts::lines(const CarmenFaults& faults) const {
       add("beams every " + rounded(one.step_deg, 1e3) + "°: each bearing, every " + rounded(one.variant_step_deg, 1e3) +
           "°, takes the nearest" + of_scans);
   }
-  if (guessed_fields_ > 0) {
-    add("FLASER lines do not say where their " + std::to_string(guessed_values_) +
-        " values point: 180° are assumed in " + counted(guessed_fields_, "scan"));
+  for (const auto& [values, scans] : guessed_fields_) {
+    const auto usual_deg = usual_field_deg(values);
+    const std::string usual = usual_deg ? ", and scanners with so many see " + std::to_string(*usual_deg) + "°" : "";
+    add("FLASER lines do not say where their " + std::to_string(values) + " values point: 180° are assumed in " +
+        counted(scans, "scan") + usual + "; ROBOTLASER1 lines state start angle and field of view");
   }
   for (const auto& [kind, count] : faults.others) {
     add(counted(count, "scan") + " of " + kind +
@@ -174,7 +190,7 @@ std::vector<std::string> CarmenDoubts::lines(const CarmenFaults& faults) const {
   if (not_numbers_ > 0)
     add(counted(not_numbers_, "range is no number", "ranges are no numbers") + ", or below 0: not valid");
   if (std::string line = far_line(); !line.empty()) add(std::move(line));
-  if (std::string line = mount_line(faults); !line.empty()) add(std::move(line));
+  if (std::string line = mount_line(faults.stated_mount); !line.empty()) add(std::move(line));
   return lines;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,7 +37,7 @@ class CarmenDoubts {
   void add_beams_of(const CarmenScan& scan);
   void add_ranges_of(const CarmenScan& scan);
   [[nodiscard]] std::string far_line() const;
-  [[nodiscard]] std::string mount_line(const CarmenFaults& faults) const;
+  [[nodiscard]] std::string mount_line(const StatedMount& stated) const;
 
   std::vector<Beams> beams_;  // one entry for each shape of scan
   struct Mount {
@@ -48,8 +49,7 @@ class CarmenDoubts {
   std::size_t far_scans_ = 0;  // with ranges that no scanner measures
   std::size_t first_far_line_ = 0;
   std::size_t not_numbers_ = 0;
-  std::size_t guessed_fields_ = 0;
-  std::size_t guessed_values_ = 0;
+  std::map<std::size_t, std::size_t> guessed_fields_;  // scans by the number of their values
 };
 
 }  // namespace deltamap::drivers::carmen

@@ -5,12 +5,15 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "core/counted.hpp"
 #include "core/files/foreign_file.hpp"
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::drivers::carmen {
 namespace {
@@ -86,14 +89,27 @@ std::optional<CarmenRecord> CarmenLog::record_of_line() {
 
 /// Lasers that are not read, and where the log says that its laser is.
 void CarmenLog::look_at_other(std::string_view text) {
-  constexpr std::string_view kOffset = "robot_frontlaser_offset ";
   const std::string_view kind = kind_of(text);
   if (kind.find("LASER") != std::string_view::npos && kind.front() != '#') ++faults_.others[std::string(kind)];
-  const std::size_t at = kind == "PARAM" ? text.find(kOffset) : std::string_view::npos;
-  if (at == std::string_view::npos) return;
-  double offset_m = 0.0;
-  const char* const first = text.data() + at + kOffset.size();
-  if (std::from_chars(first, text.data() + text.size(), offset_m).ec == std::errc{}) faults_.stated_offset_m = offset_m;
+  if (kind == "PARAM") look_at_parameter(text);
+}
+
+/// "PARAM NAME VALUE …". Angles are radians, as all of CARMEN's; what is more than a turn can only be degrees.
+void CarmenLog::look_at_parameter(std::string_view text) {
+  std::array<std::string_view, 3> words;
+  for (std::string_view& word : words) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    word = kind_of(text);
+    text.remove_prefix(word.size());
+  }
+  double value = 0.0;
+  const char* const last = words[2].data() + words[2].size();
+  const auto [end, error] = std::from_chars(words[2].data(), last, value);
+  if (error != std::errc{} || end != last || !std::isfinite(value)) return;
+  if (words[1] == "robot_frontlaser_offset") faults_.stated_mount.x_m = value;
+  if (words[1] == "robot_frontlaser_side_offset") faults_.stated_mount.y_m = value;
+  if (words[1] == "robot_frontlaser_angular_offset")
+    faults_.stated_mount.yaw_rad = std::abs(value) > 2.0 * std::numbers::pi ? radians(value) : value;
 }
 
 void CarmenLog::keep_broken(const std::string& why) {

@@ -19,6 +19,15 @@
 
 namespace deltamap::drivers::carmen {
 
+/// Where a log's PARAM lines have its laser on the robot.
+struct StatedMount {
+  std::optional<double> x_m;      ///< robot_frontlaser_offset
+  std::optional<double> y_m;      ///< robot_frontlaser_side_offset
+  std::optional<double> yaw_rad;  ///< robot_frontlaser_angular_offset
+
+  [[nodiscard]] bool is_given() const { return x_m || y_m || yaw_rad; }
+};
+
 /// What of a log's lines was left out or changed.
 struct CarmenFaults {
   std::size_t broken_lines = 0;
@@ -54,10 +63,12 @@ class CarmenLog {
   [[nodiscard]] std::optional<CarmenRecord> record_of_line();
   void keep_broken(const std::string& why);
   void look_at_other(std::string_view text);
+  void look_at_parameter(std::string_view text);
   void end();
 
   std::filesystem::path file_;
   CarmenClock clock_;
+  HeadingUnit headings_;
   std::ifstream in_;
   std::string text_;
   bool is_text_ = true;                                         // the line in text_
@@ -69,7 +80,6 @@ class CarmenLog {
   std::vector<std::string> broken_since_record_;  // the first of the lines behind the last record
   std::size_t lines_since_record_ = 0;            // broken ones
   bool is_over_ = false;
-  HeadingUnit headings_;
   std::size_t line_ = 0;
   std::size_t records_ = 0;
   std::uint64_t size_bytes_ = 0;

@@ -293,6 +293,45 @@ TEST_F(CarmenDefects, AByteOrderMarkIsNoPartOfTheFirstLine) {
   EXPECT_EQ(told_.size(), 1u) << all_told();
 }
 
+TEST_F(CarmenDefects, AFanThatOnlyTheNumberOfValuesTellsIsGuessedAndNamed) {
+  const std::vector<std::pair<int, std::string>> usual{{541, "270°"}, {1081, "270°"}, {682, "240°"}, {333, ""}};
+  for (const auto& [values, field] : usual) {
+    std::vector<Line> lines = drawn_lines();
+    for (Line& line : lines) {
+      line.announced = values;
+      line.ranges.assign(static_cast<std::size_t>(values), "2.50");
+    }
+    look(log_of(lines));
+    EXPECT_TRUE(tells("FLASER lines do not say where their " + std::to_string(values) +
+                      " values point: 180° are assumed in 40 scans" +
+                      (field.empty() ? "" : ", and scanners with so many see " + field) +
+                      "; ROBOTLASER1 lines state start angle and field of view"))
+        << all_told();
+  }
+}
+
+TEST_F(CarmenDefects, TheMountOfTheParameterLinesIsToldWithAllOfItsParts) {
+  const std::string parameters =
+      "PARAM robot_frontlaser_offset 0.3 1.0 host 1.0\nPARAM robot_frontlaser_side_offset -0.05\n"
+      "PARAM\trobot_frontlaser_angular_offset\t3.1415927 1.0 host 1.0\nPARAM robot_rearlaser_offset 9\n";
+  std::string raw;
+  for (const Line& line : drawn_lines())
+    raw += "RAWLASER1 0 -1.5708 3.1416 3.1416 81.9 0.01 0 2 1 1 0" + text(" %.6f", line.stamp_s) + " host 1\n";
+  look(parameters + raw);
+  EXPECT_TRUE(
+      tells("the log has the laser at 0.300, -0.050 m, 180.0°: set laser.mount (--set laser.mount.x_m=0.3 --set "
+            "laser.mount.y_m=-0.05 --set laser.mount.yaw_deg=180)"))
+      << all_told();
+  look("PARAM robot_frontlaser_angular_offset 180\n" + raw);
+  EXPECT_TRUE(tells("the log has the laser at 0.000, 0.000 m, 180.0°")) << "in degrees: " << all_told();
+  look(parameters + log_of(drawn_lines()));
+  EXPECT_TRUE(tells("the log has the laser at 0.100, 0.000 m, 0.0°")) << all_told();
+  EXPECT_TRUE(
+      tells("; its robot_frontlaser_offset says 0.3 m; its robot_frontlaser_side_offset says -0.05 m; its "
+            "robot_frontlaser_angular_offset says 180°"))
+      << all_told();
+}
+
 TEST_F(CarmenDefects, SweepsThatALogHasAsTwoKindsAreImportedOnce) {
   std::vector<Line> lines = drawn_lines();
   for (Line& line : lines)
