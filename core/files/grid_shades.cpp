@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/counted.hpp"
 #include "core/files/shortest_text.hpp"
 
 namespace deltamap {
@@ -15,6 +16,8 @@ constexpr Shade kOccupiedShade = 0;  // map_saver's, of 255
 constexpr Shade kUnknownShade = 205;
 constexpr Shade kFreeShade = 254;
 constexpr double kFewPixels = 0.005;  // of all: so many of one shade between are drawn, not the blur of an edge
+constexpr double kFewBeside = 0.25;   // of a drawn shade: fewer unknown cells do not tell that it is none
+constexpr double kWholeEdge = 0.95;   // of the picture's outermost pixels
 constexpr double kNearAnEnd = 0.1;    // of the light: a shade so near to black or white is meant for that
 
 /// The shade of 255 that this one is exactly.
@@ -48,6 +51,8 @@ CellState as_meant(Shade shade_of_255, bool negate) {
   return (shade_of_255 == kOccupiedShade) != negate ? CellState::kOccupied : CellState::kFree;
 }
 
+std::string percent(double share) { return std::to_string(std::llround(100.0 * share)) + " %"; }
+
 std::string word_of(CellState state) {
   return state == CellState::kFree ? "free" : state == CellState::kOccupied ? "occupied" : "unknown";
 }
@@ -69,8 +74,7 @@ class Doubts {
     if (!is_exact_ && keys_.lines.free_threshold == 0) add(0, "'free_thresh' is not given: 0.196 is taken");
     if (!is_exact_ && keys_.lines.occupied_threshold == 0) add(0, "'occupied_thresh' is not given: 0.65 is taken");
     judge_negate();
-    if (count(CellState::kUnknown) == 0)
-      add(0, "nothing is unknown: " + between_ + "what no robot has seen is not told from floor and walls");
+    judge_unknown();
     return std::move(lines_);
   }
 
@@ -80,7 +84,7 @@ class Doubts {
   }
   [[nodiscard]] std::uint64_t count(CellState state) const { return cells_[static_cast<std::size_t>(state)]; }
   [[nodiscard]] std::string share(std::uint64_t pixels) const {
-    return std::to_string(std::llround(100.0 * static_cast<double>(pixels) / static_cast<double>(all_))) + " %";
+    return percent(static_cast<double>(pixels) / static_cast<double>(all_));
   }
 
   void judge_thresholds() {
@@ -127,10 +131,39 @@ class Doubts {
       }
       if (of_255(shade, census_.brightest) == kUnknownShade && is_drawn(shade)) return tell_unknown_shade(shade);
     }
-    if (most == 0 || count(CellState::kUnknown) > 0) return;
+    if (most == 0 || static_cast<double>(count(CellState::kUnknown)) >= kFewBeside * static_cast<double>(pixels))
+      return;
     between_ = "shade " + std::to_string(most) + " of " + std::to_string(census_.brightest) + " (" +
                share(census_.pixels[most]) + " of the cells) counts as " + word_of(states_[most]) + " by " +
-               by_key(states_[most]) + "; ";
+               by_key(states_[most]);
+    between_line_ = line_of(states_[most]);
+  }
+  /// Scattered cells of another shade do not make a map whose unknown is known.
+  void judge_unknown() {
+    const auto unknown = count(CellState::kUnknown);
+    const bool is_hardly_any = static_cast<double>(unknown) < kFewPixels * static_cast<double>(all_);
+    const std::string few =
+        unknown == 0 ? "nothing is unknown" : "hardly anything is unknown (" + counted(unknown, "cell") + ")";
+    if (is_hardly_any) {
+      add(0, few + ": " + between_ + (between_.empty() ? "" : "; ") +
+                 "what no robot has seen is not told from floor and walls");
+    } else if (!between_.empty()) {
+      add(between_line_,
+          between_ + ", and only " + counted(unknown, "cell is", "cells are") + " unknown: is it right?");
+    } else if (edge_share(CellState::kFree) >= kWholeEdge) {
+      add(0, percent(edge_share(CellState::kFree)) +
+                 " of the picture's edge is free: is what lies outside drawn white? What no robot has seen is unknown "
+                 "(205)");
+    }
+  }
+  [[nodiscard]] double edge_share(CellState state) const {
+    std::uint64_t all = 0;
+    std::uint64_t in_state = 0;
+    for (std::size_t shade = 0; shade < states_.size(); ++shade) {
+      all += census_.edge[shade];
+      in_state += states_[shade] == state ? census_.edge[shade] : 0;
+    }
+    return static_cast<double>(in_state) / static_cast<double>(all);
   }
   [[nodiscard]] bool is_drawn(Shade shade) const {
     return static_cast<double>(census_.pixels[shade]) >= kFewPixels * static_cast<double>(all_);
@@ -160,14 +193,16 @@ class Doubts {
   bool is_swapped_ = false;
   std::array<std::uint64_t, 3> cells_{};
   std::uint64_t all_ = 0;
-  std::string between_;
+  std::string between_;  // what a shade between black and white counts as, in place of unknown
+  int between_line_ = 0;
   std::vector<std::string> lines_;
 };
 
 }  // namespace
 
 ShadeCensus census_of(PictureReader& picture) {
-  ShadeCensus census{picture.brightest(), std::vector<std::uint64_t>(std::size_t{picture.brightest()} + 2)};
+  const std::vector<std::uint64_t> none(std::size_t{picture.brightest()} + 2);
+  ShadeCensus census{picture.brightest(), none, none};
   std::vector<Shade> row(static_cast<std::size_t>(picture.width()));
   for (int i = 0; i < picture.height(); ++i) {
     picture.read_row(row);
@@ -176,6 +211,9 @@ ShadeCensus census_of(PictureReader& picture) {
       census.pixels[*first] += static_cast<std::uint64_t>(last - first);
       first = last;
     }
+    const bool is_outermost = i == 0 || i + 1 == picture.height();
+    for (std::size_t at = 0; at < row.size(); at += is_outermost ? 1 : std::max<std::size_t>(1, row.size() - 1))
+      ++census.edge[row[at]];
   }
   return census;
 }

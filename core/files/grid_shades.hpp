@@ -17,6 +17,7 @@ namespace deltamap {
 struct ShadeCensus {
   Shade brightest = 255;
   std::vector<std::uint64_t> pixels;
+  std::vector<std::uint64_t> edge;  ///< of these, the outermost ones
 };
 
 /// Reads the picture to its end.

@@ -247,6 +247,26 @@ std::vector<Way> readable_ways() {
   return ways;
 }
 
+/// A binary PGM with another last pixel.
+std::string with_last(std::string pgm, unsigned shade) {
+  pgm.back() = static_cast<char>(shade);
+  return pgm;
+}
+
+/// A binary PGM whose outermost pixels are of one shade.
+std::string framed(std::string pgm, const OccupancyGrid& grid, char shade) {
+  const auto width = static_cast<std::size_t>(grid.width());
+  const auto height = static_cast<std::size_t>(grid.height());
+  const std::size_t first = pgm.size() - width * height;
+  for (std::size_t row = 0; row < height; ++row) {
+    for (std::size_t column = 0; column < width; ++column) {
+      if (row == 0 || column == 0 || row + 1 == height || column + 1 == width)
+        pgm[first + row * width + column] = shade;
+    }
+  }
+  return pgm;
+}
+
 std::vector<Way> doubtful_ways() {
   return {
       {"205 free beside white",
@@ -261,6 +281,23 @@ std::vector<Way> doubtful_ways() {
        },
        with([](Keys& keys) { keys.thresholds = "occupied_thresh: 0.65\nfree_thresh: 0.6\n"; }),
        "nothing is unknown: shade 128 of 255", "", false},
+      {"grey that counts as free, but for one cell",
+       [](const auto& grid) {
+         return with_last(binary_pgm(grid, {0, 128, 255}), 95);
+       },
+       with([](Keys& keys) { keys.thresholds = "occupied_thresh: 0.65\nfree_thresh: 0.6\n"; }), "shade 128 of 255 (",
+       "", false},
+      {"grey that counts as occupied, but for one cell",
+       [](const auto& grid) {
+         return with_last(binary_pgm(grid, {0, 100, 255}), 176);
+       },
+       with([](Keys& keys) { keys.thresholds = "occupied_thresh: 0.55\nfree_thresh: 0.196\n"; }),
+       "counts as occupied by 'occupied_thresh' 0.55", "", false},
+      {"the outside in white, and the floor in 205",
+       [](const auto& grid) {
+         return framed(binary_pgm(grid, {0, 205, 205}), grid, '\xFE');
+       },
+       with([](Keys&) {}), "of the picture's edge is free", "", false},
       {"no grey at all",
        [](const auto& grid) {
          return binary_pgm(grid, {0, 254, 254});
