@@ -25,6 +25,7 @@ namespace {
 
 constexpr int kTogether = Tiled<CellState>::kSide;  // pixels
 constexpr double kNoTurn_rad = 1e-6;
+constexpr double kMostYaw_rad = 2.0 * std::numbers::pi + kNoTurn_rad;  // more is written in degrees
 constexpr double kQuarterTurn_rad = 2e-5;  // as 4.7124 is from three quarters: 2 mm at 100 m
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
@@ -89,6 +90,11 @@ class Placement {
   }
   [[noreturn]] void refuse_turn(const GridDescription& keys, const std::filesystem::path& file) const {
     const auto rounded = [](double value) { return shortest_text(std::round(value * 1e4) / 1e4); };
+    if (std::abs(keys.yaw_rad) > kMostYaw_rad) {
+      refuse(file, of_line(keys.lines.origin) + "the origin's yaw " + shortest_text(keys.yaw_rad) +
+                       " looks like degrees, and radians are meant: " +
+                       rounded(std::remainder(radians(keys.yaw_rad), 2.0 * std::numbers::pi)));
+    }
     const Point2 origin = lowest_corner(keys, keys.yaw_rad);
     refuse(file, of_line(keys.lines.origin) + "a turned origin (yaw " + shortest_text(keys.yaw_rad) +
                      ") is read for quarter turns alone: turn the picture by " + rounded(degrees(keys.yaw_rad)) +
