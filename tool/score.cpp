@@ -14,6 +14,7 @@
 #include "core/counted.hpp"
 #include "simulation/score/change_score.hpp"
 #include "simulation/score/trajectory_score.hpp"
+#include "tool/scenario_place.hpp"
 #include "tool/subcommands.hpp"
 #include "tool/told_grid.hpp"
 
@@ -25,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 struct ScoreOptions {
   std::filesystem::path truth;
-  std::filesystem::path world;
+  std::string world;
   std::filesystem::path trajectory;
   std::filesystem::path map;
   std::filesystem::path start_map;
@@ -120,7 +121,7 @@ void print_score(const score::TrajectoryScore& trajectory, const score::ChangeSc
 }
 
 void run_score(const ScoreOptions& options) {
-  const simulation::Scenario scenario = simulation::read_scenario(options.world);
+  const simulation::Scenario scenario = simulation::read_scenario(scenario_file(options.world));
   const simulation::Truth truth = simulation::read_truth(options.truth);
   const auto trajectory = score::trajectory_score(score::read_trajectory(options.trajectory), truth);
   if (trajectory.poses == 0) {
@@ -145,7 +146,10 @@ void add_score(CLI::App& app) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App& command = *app.add_subcommand("score", "a trajectory and a map against the truth of a simulation");
   command.add_option("--truth", options->truth, "what deltamap sim --truth wrote")->required();
-  command.add_option("--world", options->world, "the scenario that was simulated")->required();
+  command
+      .add_option("--world", options->world,
+                  "the scenario that was simulated: a YAML file, or the name of a delivered one")
+      ->required();
   command.add_option("--trajectory", options->trajectory, "TUM file")->required();
   command.add_option("--map", options->map, "the map at the end (YAML)")->required();
   command.add_option("--start-map", options->start_map, "the map at the start (YAML)")->required();

@@ -35,5 +35,15 @@ TEST(Score, SaysWhereThereIsNothingToScore) {
   EXPECT_EQ(json["changes"]["eligible"], 0);
 }
 
+TEST(Score, TakesADeliveredScenarioByItsName) {
+  const test::ToolRun told = test::run_deltamap(
+      {"score", "--truth", "/no/such", "--world", "hill", "--trajectory", "t", "--map", "m", "--start-map", "m"});
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_NE(told.errors.find("hill: no such file, and no scenario: "), std::string::npos) << told.errors;
+  const test::ToolRun known = test::run_deltamap(
+      {"score", "--truth", "/no/such", "--world", "hall", "--trajectory", "t", "--map", "m", "--start-map", "m"});
+  EXPECT_EQ(known.errors.find("hall"), std::string::npos) << known.errors;
+}
+
 }  // namespace
 }  // namespace deltamap::tool
