@@ -72,9 +72,15 @@ void add_sim(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   sim.add_option("--fault-for", options->fault_lasts_s, "seconds that it lasts (default: for ever)")
       ->check(CLI::PositiveNumber);
-  sim.add_option("--write-map", options->write_map, "write the map of the world at the start (YAML) and end");
+  CLI::Option& map =
+      *sim.add_option("--write-map", options->write_map, "write the map of the world at the start (YAML) and end");
   sim.add_option("--resolution", options->resolution_m, "of that map, m a cell (default 0.05)")
-      ->check(CLI::Range(0.005, 1.0));
+      ->check(CLI::Range(0.005, 1.0))
+      ->needs(&map);
+  for (const char* of_a_drive :
+       {"--links", "--seed", "--truth", "--for", "--change-every", "--fault", "--fault-after", "--fault-for"}) {
+    map.excludes(sim.get_option(of_a_drive));  // nothing drives, and nothing changes
+  }
   sim.callback([options] { simulate(*options); });
 }
 

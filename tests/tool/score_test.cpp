@@ -45,5 +45,22 @@ TEST(Score, TakesADeliveredScenarioByItsName) {
   EXPECT_EQ(known.errors.find("hall"), std::string::npos) << known.errors;
 }
 
+TEST(Sim, RefusesBesideWriteMapWhatOnlyADriveObeys) {
+  const test::TemporaryFolder folder;
+  const std::string map = (folder.path() / "m.yaml").string();
+  const std::vector<std::vector<std::string>> of_a_drive{
+      {"--for", "5"},          {"--truth", "t.jsonl"},     {"--links", "."},       {"--seed", "2"},
+      {"--change-every", "3"}, {"--fault", "laser_blind"}, {"--fault-after", "1"}, {"--fault-for", "1"}};
+  for (const std::vector<std::string>& option : of_a_drive) {
+    std::vector<std::string> words{"sim", "--world", "hall", "--write-map", map};
+    words.insert(words.end(), option.begin(), option.end());
+    const test::ToolRun told = test::run_deltamap(words);
+    EXPECT_EQ(told.exit_code, 2) << option[0];
+    EXPECT_NE(told.errors.find(option[0]), std::string::npos) << told.errors;
+    EXPECT_FALSE(std::filesystem::exists(map)) << option[0];
+  }
+  EXPECT_EQ(test::run_deltamap({"sim", "--world", "hall", "--resolution", "0.1", "--for", "1"}).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace deltamap::tool
