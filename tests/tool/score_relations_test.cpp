@@ -43,7 +43,7 @@ TEST_F(ScoreRelations, PrintsWhatTheTrajectoryIsOff) {
   EXPECT_NEAR(told["translation_m"]["deviation"].get<double>(), 0.1, 1e-6);
   EXPECT_NEAR(told["rotation_deg"]["mean"].get<double>(), 0.0, 1e-6);
   ASSERT_EQ(score("10 12 2 0 0 0 0 0.1\n", false), 0) << error_;
-  EXPECT_NE(out_.find("1 relations, 0 outside"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("1 relation, 0 outside"), std::string::npos) << out_;
   EXPECT_NE(out_.find("rotation:            5.7296 +- 0.0000 deg"), std::string::npos) << out_;
 }
 
