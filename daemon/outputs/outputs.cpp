@@ -90,6 +90,9 @@ void add_replay(Json& json, const RunReport& report) {
   json["began"] = report.began;
   json["recording"] = as_json(report.recording);
   json["recording"]["file"] = report.recording_file;
+  json["recording"]["outside_window"] = {{"packets_before", report.outside_window.packets_before},
+                                         {"scans_before", report.outside_window.scans_before},
+                                         {"packets_after", report.outside_window.packets_after}};
 }
 
 }  // namespace

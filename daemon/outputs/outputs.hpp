@@ -46,6 +46,13 @@ struct VerdictTimes {
   double wrong_s = 0.0;
 };
 
+/// Of a recording, what a replay of a part of it leaves out.
+struct OutsideWindow {
+  std::uint64_t packets_before = 0;
+  std::uint64_t scans_before = 0;  ///< decoded
+  std::uint64_t packets_after = 0;
+};
+
 /// Everything that report.json says.
 struct RunReport {
   ScanCounts scans;
@@ -69,6 +76,7 @@ struct RunReport {
   std::string began;                          ///< replay: what of the recorded run's beginning is used, or why not
   std::string recording_file;                 ///< replay: what was replayed
   drivers::port::LogFaults recording;         ///< replay: what it lacks
+  OutsideWindow outside_window;               ///< replay: of the recording, and not replayed
   std::map<std::string, std::uint64_t> wire;  ///< decoder counts by cause
 };
 

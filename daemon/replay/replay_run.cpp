@@ -92,7 +92,10 @@ void Replay::run(const ReplayProgress& progress) {
       const auto replayed = port.next();
       if (!replayed) break;
       decoder.feed(replayed->record, sinks);
-      if (!replayed->in_window) continue;
+      if (!replayed->in_window) {
+        report_.outside_window.scans_before += scans.size();
+        continue;
+      }
     }
     for (const auto& [message, number] : odometry) take(message, number);
     for (Scan& scan : scans) take(std::move(scan));
@@ -100,6 +103,8 @@ void Replay::run(const ReplayProgress& progress) {
     if (!scans.empty() && !progress(done)) throw std::runtime_error("interrupted");
   }
   report_.recording = port.faults();
+  report_.outside_window.packets_before = port.packets_before();
+  report_.outside_window.packets_after = port.count_packets_after();
   if (report_.scans.decoded == 0) {
     const drivers::port::LogFaults& faults = report_.recording;
     if (faults.cut) throw std::runtime_error(faults.cut->text + "; no scan lies before that");

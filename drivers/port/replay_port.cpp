@@ -2,7 +2,10 @@
 #include "drivers/port/replay_port.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
+
+#include "core/counted.hpp"
 
 namespace deltamap::drivers::port {
 namespace {
@@ -13,17 +16,47 @@ constexpr double kSetBackS = 1.0;
 
 }  // namespace
 
+double ReplayPort::passed_s(Timestamp stamp) {
+  if (!began_) began_ = last_ = stamp;
+  const double back_s = seconds(last_ - stamp);
+  if (back_s > kSetBackS) {
+    began_ = *began_ - (last_ - stamp);
+    if (set_back_++ == 0) first_set_back_s_ = seconds(stamp - *began_);
+    farthest_back_s_ = std::max(farthest_back_s_, back_s);
+  }
+  last_ = stamp;
+  return std::max(0.0, seconds(stamp - *began_));
+}
+
 std::optional<ReplayedRecord> ReplayPort::next() {
-  while (auto record = reader_.next()) {
-    if (!began_) began_ = last_ = record->stamp;
-    if (seconds(last_ - record->stamp) > kSetBackS) began_ = *began_ - (last_ - record->stamp);
-    last_ = record->stamp;
-    const double after_s = std::max(0.0, seconds(record->stamp - *began_));
-    if (after_s > window_.to_s) return std::nullopt;
+  while (!is_over_) {
+    auto record = reader_.next();
+    if (!record) break;
+    const double after_s = passed_s(record->stamp);
+    is_over_ = after_s > window_.to_s;
+    if (is_over_) break;
+    packets_before_ += after_s < window_.from_s ? 1 : 0;
     const bool went_out = !record->bytes.empty() && record->direction == Direction::kOut;
     if (!went_out) return ReplayedRecord{std::move(*record), after_s >= window_.from_s};
   }
   return std::nullopt;
+}
+
+std::uint64_t ReplayPort::count_packets_after() {
+  std::uint64_t packets = is_over_ ? 1 : 0;
+  while (is_over_ && reader_.next()) ++packets;
+  return packets;
+}
+
+LogFaults ReplayPort::faults() const {
+  LogFaults faults = reader_.faults();
+  if (set_back_ == 0) return faults;
+  char text[160];
+  (void)std::snprintf(text, sizeof text, ", by up to %.3g s (the first %.1f s after its first packet)",
+                      farthest_back_s_, first_set_back_s_);
+  faults.doubts.push_back(file_.string() + ": its clock was set back " + counted(set_back_, "time") + text +
+                          ": times go on from there");
+  return faults;
 }
 
 }  // namespace deltamap::drivers::port

@@ -3,9 +3,11 @@
 // out: sessions only listen in a replay.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "drivers/port/byte_log.hpp"
 
@@ -27,18 +29,33 @@ struct ReplayedRecord {
 class ReplayPort {
  public:
   /// Throws std::runtime_error as ByteLogReader does.
-  ReplayPort(const std::filesystem::path& file, const ReplayWindow& window) : reader_{file}, window_{window} {}
+  ReplayPort(std::filesystem::path file, const ReplayWindow& window)
+      : file_{std::move(file)}, reader_{file_}, window_{window} {}
 
   /// The next record; nothing at the end, after the window, or where the file was cut. Throws as ByteLogReader does.
   [[nodiscard]] std::optional<ReplayedRecord> next();
 
-  [[nodiscard]] LogFaults faults() const { return reader_.faults(); }
+  /// Of what has been read; a clock that was set back is one of the doubts.
+  [[nodiscard]] LogFaults faults() const;
+  /// Packets that were read before the window.
+  [[nodiscard]] std::uint64_t packets_before() const { return packets_before_; }
+  /// Reads on to the end: packets after the window, that which ended it included. Throws as ByteLogReader does.
+  [[nodiscard]] std::uint64_t count_packets_after();
   [[nodiscard]] std::uint64_t size_bytes() const { return reader_.size_bytes(); }
   [[nodiscard]] std::uint64_t read_bytes() const { return reader_.read_bytes(); }
 
  private:
+  /// Seconds that have passed since the first record, whatever its clock was set to.
+  [[nodiscard]] double passed_s(Timestamp stamp);
+
+  std::filesystem::path file_;
   ByteLogReader reader_;
   ReplayWindow window_;
+  bool is_over_ = false;
+  std::uint64_t packets_before_ = 0;
+  std::uint64_t set_back_ = 0;     // times that the clock was
+  double first_set_back_s_ = 0.0;  // after the first record
+  double farthest_back_s_ = 0.0;
   std::optional<Timestamp> began_;  // on the clock as it is set now
   Timestamp last_{};
 };

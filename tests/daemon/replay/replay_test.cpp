@@ -150,6 +150,30 @@ TEST_F(ReplayTest, AnEmptyOrForeignRecordingOrOneWithoutAScanIsNamedAndLeavesNot
   expect_nothing_left();
 }
 
+TEST_F(ReplayTest, TheReportCountsWhatLiesOutsideOfTheWindow) {
+  const auto outside = [&] {
+    const auto report = nlohmann::json::parse(content_of(folder_.path() / "out/report.json"));
+    return std::pair{report["recording"]["outside_window"], report["scans"].get<std::uint64_t>()};
+  };
+  EXPECT_EQ(error_of(job()), "");
+  const auto [none, all_scans] = outside();
+  EXPECT_EQ(none, (nlohmann::json{{"packets_before", 0}, {"scans_before", 0}, {"packets_after", 0}}));
+  ReplayJob part = job();
+  part.from_s = 1.0;
+  EXPECT_EQ(error_of(part), "");
+  const auto [before, later_scans] = outside();
+  EXPECT_EQ(before["scans_before"].get<std::uint64_t>() + later_scans, all_scans);
+  EXPECT_GT(before["scans_before"], 0);
+  EXPECT_GT(before["packets_before"], before["scans_before"]);
+  EXPECT_EQ(before["packets_after"], 0);
+  part.from_s = 0.0;
+  part.to_s = 2.0;
+  EXPECT_EQ(error_of(part), "");
+  const auto [after, earlier_scans] = outside();
+  EXPECT_LT(earlier_scans, all_scans);
+  EXPECT_GE(after["packets_after"].get<std::uint64_t>(), all_scans - earlier_scans);
+}
+
 TEST_F(ReplayTest, AWindowWithoutAScanIsRefused) {
   ReplayJob late = job();
   late.from_s = 1000.0;

@@ -35,6 +35,10 @@ TEST(ReplayPort, GivesWhatCameInAndTheNotesAndMarksTheWindow) {
   EXPECT_TRUE(note->in_window);
   EXPECT_EQ(replay.next().value().record.bytes, (std::vector<std::uint8_t>{2}));
   EXPECT_FALSE(replay.next());
+  EXPECT_FALSE(replay.next()) << "the window is over";
+  EXPECT_EQ(replay.packets_before(), 2u);
+  EXPECT_EQ(replay.count_packets_after(), 1u);
+  EXPECT_TRUE(replay.faults().doubts.empty());
 }
 
 TEST(ReplayPort, LeavesNothingOutWhereTheClockWasSetBackBehindTheBeginning) {
@@ -64,6 +68,12 @@ TEST(ReplayPort, CountsOnOverAClockThatWasSetBack) {
   ReplayPort replay{folder.path() / "a.pcapng", {.from_s = 1.0, .to_s = 4.0}};
   for (const bool in_window : {false, true, true, true}) EXPECT_EQ(replay.next().value().in_window, in_window);
   EXPECT_FALSE(replay.next()) << "5 s after the first";
+  const std::string told = testing::PrintToString(replay.faults().doubts);
+  EXPECT_NE(
+      told.find("a.pcapng: its clock was set back 1 time, by up to 52 s (the first 2.0 s after its first packet): "
+                "times go on from there"),
+      std::string::npos)
+      << told;
 }
 
 }  // namespace
