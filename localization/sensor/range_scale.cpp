@@ -15,6 +15,7 @@ namespace {
 constexpr double kEachM = 0.5;           // driven from one look to the next
 constexpr std::size_t kFewestEnds = 30;  // of a scan that can tell
 constexpr int kFewestScans = 8;          // before a factor is named,
+constexpr int kManyScans = 24;           // before ranges have proven right,
 constexpr int kMostScans = 32;           // what is older counts less and less
 constexpr double kClearlyMore = 0.08;    // share of the ends,
 constexpr double kExplains = 0.6;        // and so many must be explained at all
@@ -51,6 +52,7 @@ double explained_about(const LikelihoodField& field, const motion::BeamEnds& end
 
 void RangeScale::observe(const LikelihoodField& field, const motion::BeamEnds& ends, const Point2& robot_from_laser,
                          const Pose2& map_from_robot, double driven_m) {
+  if (is_settled_) return;
   since_tried_m_ += driven_m;
   if (since_tried_m_ < kEachM || ends.size() < kFewestEnds) return;
   since_tried_m_ = 0.0;
@@ -65,6 +67,13 @@ void RangeScale::observe(const LikelihoodField& field, const motion::BeamEnds& e
   ++tried.scans;
   tried.explained += explained_about(field, longer, map_from_robot);
   tried.explained_as_is += explained_about(field, ends, map_from_robot);
+  is_settled_ = shown() || has_proven_right();
+}
+
+bool RangeScale::has_proven_right() const {
+  return std::all_of(tried_.begin(), tried_.end(), [](const Tried& one) {
+    return one.scans >= kManyScans && one.explained_as_is >= kExplains * one.scans;
+  });
 }
 
 std::optional<OtherScale> RangeScale::shown() const {

@@ -13,7 +13,7 @@ namespace {
 const Point2 kLaser{0.1, 0.0};
 
 /// Ranges are `factor` of what they should be; of `strangers` in ten beams something stands in the way.
-std::optional<OtherScale> shown_after(double way_m, double factor, std::size_t strangers = 0) {
+RangeScale scale_after(double way_m, double factor, std::size_t strangers = 0) {
   const OccupancyGrid map = test::pillar_room();
   const LikelihoodField field{map, {}};
   RangeScale scale;
@@ -30,7 +30,11 @@ std::optional<OtherScale> shown_after(double way_m, double factor, std::size_t s
     const Pose2 believed = truth * Pose2{factor == 1.0 ? 0.0 : 0.2, 0.1 * (1.0 - factor), 0.0};
     scale.observe(field, ends, kLaser, believed, kStepM);
   }
-  return scale.shown();
+  return scale;
+}
+
+std::optional<OtherScale> shown_after(double way_m, double factor, std::size_t strangers = 0) {
+  return scale_after(way_m, factor, strangers).shown();
 }
 
 TEST(RangeScale, NamesTheFactorThatExplainsMore) {
@@ -50,6 +54,16 @@ TEST(RangeScale, SaysNothingWhereMuchStandsInTheWay) {
 }
 
 TEST(RangeScale, SaysNothingBeforeEnoughScansHaveShownIt) { EXPECT_FALSE(shown_after(15.0, 0.9)); }
+
+TEST(RangeScale, LooksNoLongerOnceAFactorIsNamedOrRangesHaveProvenRight) {
+  EXPECT_TRUE(scale_after(30.0, 0.9).is_settled());
+  EXPECT_FALSE(scale_after(60.0, 1.0).is_settled());
+  EXPECT_TRUE(scale_after(80.0, 1.0).is_settled());
+}
+
+TEST(RangeScale, GoesOnLookingWhereTheRangesAsTheyAreExplainLittle) {
+  EXPECT_FALSE(scale_after(90.0, 1.0, 6).is_settled());
+}
 
 }  // namespace
 }  // namespace deltamap::localization::sensor
