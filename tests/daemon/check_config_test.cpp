@@ -122,7 +122,7 @@ TEST_F(CheckConfig, TellsTheRevisionsOfAStoreAndTouchesNothing) {
   EXPECT_FALSE(fs::exists(folder_.path() / "state"));
   write_store();
   const auto before = files();
-  EXPECT_EQ(finding("store").text, settings_.map.store + ": newest revision of this map 1, 1 refusals");
+  EXPECT_EQ(finding("store").text, settings_.map.store + ": newest revision of this map 1, 1 refusal");
   EXPECT_EQ(files(), before);
 }
 
