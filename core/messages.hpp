@@ -144,6 +144,14 @@ struct WeightAverages {
   [[nodiscard]] double divergence_ratio() const { return w_slow > 0.0 ? 1.0 - w_fast / w_slow : 0.0; }
 };
 
+/// What the scans of a run have shown to be other than believed: while it is, nothing can be drawn right.
+enum class SensorDoubt : std::uint8_t {
+  kNone,
+  kWheels,  ///< they contradict the scans all the time
+  kMount,   ///< the laser is mounted otherwise than set
+  kScale    ///< ranges and map differ in scale
+};
+
 /// A scan with the pose it was taken from: what Δ-awareness and the pilot judge by.
 struct TrackedScan {
   Scan scan;
@@ -157,6 +165,7 @@ struct TrackedScan {
   /// Way that the wheels have claimed while the scans say that the robot stands, m; turns count 0.3 m a radian. 0: it
   /// moves as they say, or nothing speaks against them.
   double stood_m = 0.0;
+  SensorDoubt sensor_doubt = SensorDoubt::kNone;
 };
 
 /// A cell that has proven to be persistently different from the map.

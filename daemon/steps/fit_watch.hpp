@@ -37,6 +37,8 @@ class FitWatch {
   /// False from the moment at which a person gave a pose until the scans since then support it, or it is called right.
   /// What the first scan supports, the next ones may still refute.
   [[nodiscard]] bool start_fits() const { return !given_ || given_->is_supported; }
+  /// It has said that ranges and map differ in scale.
+  [[nodiscard]] bool is_scale_told() const { return is_scale_told_; }
   /// A person has said where the robot stands: only scans from now on speak for that.
   void relocalized() {
     given_ = Given{};

@@ -76,6 +76,13 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
 void LocalizationStep::observe(const Odometry& odometry) {
   localizer_.observe(odometry);
   mount_watch_.observe(odometry);
+  wheel_watch_.observe(odometry);
+}
+
+SensorDoubt LocalizationStep::sensor_doubt() const {
+  if (mount_watch_.is_told()) return SensorDoubt::kMount;
+  if (fit_watch_.is_scale_told()) return SensorDoubt::kScale;
+  return wheel_watch_.contradict() ? SensorDoubt::kWheels : SensorDoubt::kNone;
 }
 
 TrackedScan LocalizationStep::observe(Scan scan) {
@@ -83,6 +90,8 @@ TrackedScan LocalizationStep::observe(Scan scan) {
   tell(mount_watch_.observe(scan));
   TrackedScan tracked = localizer_.observe(std::move(scan));
   tell(fit_watch_.observe(tracked, {fit(), localizer_.fit_of_all(), localizer_.range_scale()}));
+  tell(wheel_watch_.observe(tracked, localizer_.counts().wheels_contradicted));
+  tracked.sensor_doubt = sensor_doubt();
   learn_or_forget(tracked);
   last_map_from_robot_ = tracked.estimate.map_from_robot;
   last_odom_from_robot_ = localizer_.odom_from_robot(tracked.scan.time);

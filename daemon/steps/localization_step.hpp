@@ -14,6 +14,7 @@
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/fit_watch.hpp"
 #include "daemon/steps/mount_watch.hpp"
+#include "daemon/steps/wheel_watch.hpp"
 #include "localization/localizer.hpp"
 #include "mapping/paper/divergence_ratio.hpp"
 
@@ -90,6 +91,7 @@ class LocalizationStep {
   void count_time(Timestamp time);
   void learn_or_forget(const TrackedScan& tracked);
   void tell(LogLine line);
+  [[nodiscard]] SensorDoubt sensor_doubt() const;
 
   localization::Localizer localizer_;
   std::optional<localization::motion::DriveCalibration> calibration_;      // before the newest metre
@@ -97,6 +99,7 @@ class LocalizationStep {
   double since_kept_m_ = 0.0;
   FitWatch fit_watch_;
   MountWatch mount_watch_;
+  WheelWatch wheel_watch_;
   std::vector<LogLine> lines_;
   mapping::paper::DivergenceRatio ratio_;
   LocalizationRow row_;

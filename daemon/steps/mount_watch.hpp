@@ -19,6 +19,8 @@ class MountWatch {
   void observe(const Odometry& odometry) { wheels_.add(odometry); }
   /// With the mount of the settings. A line of no text where there is nothing to say.
   [[nodiscard]] LogLine observe(const Scan& scan);
+  /// It has said so.
+  [[nodiscard]] bool is_told() const { return is_told_; }
 
  private:
   /// As they report: what the localizer makes of them follows a laser that is mounted wrong.

@@ -36,6 +36,12 @@ std::string_view name_of(GateReason reason) {
       return "rival";
     case GateReason::kSpread:
       return "spread";
+    case GateReason::kWheels:
+      return "wheels";
+    case GateReason::kMount:
+      return "mount";
+    case GateReason::kScale:
+      return "scale";
   }
   return "?";
 }
@@ -57,6 +63,25 @@ std::map<std::string, double> shut_by_reason(const GateTimes& times) {
   return shut;
 }
 
+namespace {
+
+/// Nothing where the sensors are as believed.
+std::optional<GateReason> reason_of(SensorDoubt doubt) {
+  switch (doubt) {
+    case SensorDoubt::kWheels:
+      return GateReason::kWheels;
+    case SensorDoubt::kMount:
+      return GateReason::kMount;
+    case SensorDoubt::kScale:
+      return GateReason::kScale;
+    case SensorDoubt::kNone:
+      break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 bool WriteGate::was_relocalized(const Estimate& estimate) {
   const bool is_new = relocalizations_ && *relocalizations_ != estimate.relocalizations;
   relocalizations_ = estimate.relocalizations;
@@ -71,6 +96,7 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
   if (estimate.belief.verdict == PoseVerdict::kWrong) return GateReason::kWrong;
   if (relocalized) return GateReason::kRelocalized;
   if (estimate.belief.pose_right < params_.disbelieved_below) return GateReason::kDisbelieved;
+  if (const auto doubt = reason_of(tracked.sensor_doubt)) return *doubt;
   if (estimate.belief.other_share > params_.most_other_share) return GateReason::kOtherHypothesis;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
   const bool is_held = estimate.belief.stable.expected + estimate.belief.elsewhere.expected >= params_.least_expected;

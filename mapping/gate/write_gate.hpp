@@ -26,9 +26,12 @@ enum class GateReason : std::uint8_t {
   kConfirming,       ///< the pose was wrong a moment ago, or scans broke off, and it has to hold for a while
   kDoubtful,         ///< P(pose right) is low
   kOtherHypothesis,  ///< another pose hypothesis holds too much of the belief: two modes
-  kSpread            ///< the pose is spread too wide, or nothing in view holds it
+  kSpread,           ///< the pose is spread too wide, or nothing in view holds it
+  kWheels,           ///< wheels and scans contradict each other all the time
+  kMount,            ///< the laser is mounted otherwise than set
+  kScale             ///< ranges and map differ in scale
 };
-inline constexpr std::size_t kGateReasons = 10;
+inline constexpr std::size_t kGateReasons = 13;
 /// For status, report and log: "open", "searching", "lost", …
 [[nodiscard]] std::string_view name_of(GateReason reason);
 /// Does it say that the pose was wrong, and not only that it may be?

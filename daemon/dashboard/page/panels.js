@@ -10,12 +10,16 @@ const GATE_WORDS = {
   confirming: "the pose has to hold for a while first", doubtful: "P(pose right) is low",
   rival: "another place fits as well",
   spread: "the pose is too uncertain, or nothing in view holds it",
+  wheels: "wheels and scans contradict each other", mount: "the laser is mounted otherwise than set",
+  scale: "ranges and map differ in scale",
   "no scans": "no scans come", off: "mapping is off", paused: "mapping is paused",
 };
 const IS_NO_GATE = { "no scans": "no scans", off: "mapping off", paused: "mapping paused" };  // nothing votes at all
 // Amber calls for a look: what is normal for minutes is calm.
 const LEVELS = { tracking: "good", global: "warn", lost: "bad", right: "good", undecided: "calm", wrong: "bad" };
-const GATE_LEVELS = { lost: "warn", wrong: "warn", disbelieved: "warn" };  // any other reason is calm
+const GATE_LEVELS = {
+  lost: "warn", wrong: "warn", disbelieved: "warn", wheels: "warn", mount: "warn", scale: "warn",
+};  // any other reason is calm
 
 const UNKNOWN = "–";
 

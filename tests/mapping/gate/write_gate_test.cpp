@@ -65,6 +65,21 @@ TEST(WriteGate, TellsWhyItIsShut) {
   EXPECT_EQ(reason_after([](Estimate& e) { e.belief.elsewhere = {.expected = 2, .fit = 2}; }), GateReason::kSpread);
 }
 
+TEST_F(DrivenGate, IsShutWhileASensorIsOtherThanBelieved) {
+  for (const auto& [doubt, reason] : {std::pair{SensorDoubt::kWheels, GateReason::kWheels},
+                                      {SensorDoubt::kMount, GateReason::kMount},
+                                      {SensorDoubt::kScale, GateReason::kScale}}) {
+    TrackedScan tracked = robot.next();
+    tracked.sensor_doubt = doubt;
+    gate.observe(tracked);
+    EXPECT_EQ(gate.reason(), reason);
+    EXPECT_FALSE(gate.has_proven_wrong()) << name_of(reason);
+    gate.observe(robot.next());
+    EXPECT_TRUE(gate.is_open());
+  }
+  EXPECT_EQ(shut_by_reason(gate.times()).count("mount"), 1u);
+}
+
 TEST(WriteGate, SeesTheSpreadAlongASlantingAxis) {
   EXPECT_EQ(reason_after([](Estimate& e) {
               e.covariance(0, 0) = e.covariance(1, 1) = 0.06;
