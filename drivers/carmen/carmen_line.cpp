@@ -235,7 +235,7 @@ void guess_bearings(CarmenScan& scan) {
 CarmenPoses read_poses(Words& words) {
   const Words::Posed laser = words.pose("laser pose");
   const Words::Posed robot = words.pose("robot pose");
-  return {laser.pose, robot.pose, robot.heading};
+  return {laser.pose, robot.pose, laser.heading, robot.heading};
 }
 
 CarmenScan read_flaser(Words& words) {

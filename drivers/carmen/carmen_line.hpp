@@ -39,7 +39,8 @@ enum class HeadingUnit { kRadian, kDegree };
 struct CarmenPoses {
   Pose2 odom_from_laser;
   Pose2 odom_from_robot;
-  double robot_heading = 0.0;  ///< as logged: neither wrapped nor in a known unit
+  double laser_heading = 0.0;  ///< as logged: neither wrapped nor in a known unit
+  double robot_heading = 0.0;  ///< as logged
 };
 
 /// Value i points to first_bearing_rad + i · bearing_step_rad in the laser's frame.

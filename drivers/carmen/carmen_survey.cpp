@@ -185,7 +185,8 @@ class ClockCensus {
 void find_dialect(CarmenSurvey& survey, const std::filesystem::path& log) {
   CarmenLog lines{log};
   ClockCensus clock;
-  HeadingCensus of_scans;
+  HeadingCensus of_robot;
+  HeadingCensus of_laser;
   HeadingCensus of_odometry;
   bool scans_carry_poses = false;
   while (const auto record = lines.next()) {
@@ -195,10 +196,14 @@ void find_dialect(CarmenSurvey& survey, const std::filesystem::path& log) {
       of_odometry.add(odometry->line, odometry->odom_from_robot.position(), odometry->heading);
     } else if (const auto& scan = std::get<CarmenScan>(*record); scan.poses) {
       scans_carry_poses = true;
-      of_scans.add(scan.line, scan.poses->odom_from_robot.position(), scan.poses->robot_heading);
+      of_robot.add(scan.line, scan.poses->odom_from_robot.position(), scan.poses->robot_heading);
+      of_laser.add(scan.line, scan.poses->odom_from_laser.position(), scan.poses->laser_heading);
     }
   }
   clock.choose(survey);
+  // Some logs have true poses for the laser alone.
+  const HeadingCensus& of_scans =
+      of_robot.unit() == HeadingUnit::kRadian && of_robot.line().empty() ? of_laser : of_robot;
   const HeadingCensus& headings = scans_carry_poses ? of_scans : of_odometry;
   survey.headings = headings.unit();
   if (std::string line = headings.line(); !line.empty()) survey.notes.push_back(std::move(line));

@@ -99,6 +99,42 @@ TEST(MapFromPoses, NeedsNoTimesAndReadsALogUpToItsCut) {
   EXPECT_TRUE(map_from_poses(folder.write("pose.log", bare.substr(0, bare.size() - 4)), {}).survey.cut);
 }
 
+TEST(MapFromPoses, TellsOfPosesThatJumpAndOfTheClock) {
+  const test::TemporaryFolder folder;
+  std::string log;
+  for (int i = 0; i < 24; ++i)
+    log += scan_in_room({1.0 + 0.08 * i + (i >= 12 ? 7.0 : 0.0), 1.5, 0.1 * i}, std::to_string(i < 12 ? 500 + i : i));
+  const std::string in = folder.write("room.log", log + "RAWLASER1 0 -1.57 3.14 3.14 8 0.01 0 2 1 1 0 24 host 0\n");
+  const std::string yaml = (folder.path() / "room.yaml").string();
+  for (const std::vector<const char*>& more : {std::vector<const char*>{}, {"--json"}}) {
+    std::vector<const char*> arguments{"deltamap", "map", "from-poses", in.c_str(), yaml.c_str()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(run_tool(static_cast<int>(arguments.size()), arguments.data()), 0);
+    const std::string told = testing::internal::GetCapturedStdout();
+    for (const char* part :
+         {"the laser's pose jumps 1 time (the first in line 13)",
+          "the log's clock was set back 1 time (the first in line 13)", "1 scan without a pose left out"}) {
+      EXPECT_NE(told.find(part), std::string::npos) << told;
+    }
+  }
+}
+
+TEST(MapFromPoses, ReadsLaserPosesInDegreesWhateverTheRobotsAre) {
+  const test::TemporaryFolder folder;
+  std::string log;
+  std::string in_degrees;
+  for (int i = 0; i < 24; ++i) {
+    const Pose2 pose{1.0 + 0.05 * i, 1.5 + 0.042 * i, 0.7};
+    log += scan_in_room(pose, std::to_string(i));
+    std::string line = scan_in_room(pose, std::to_string(i));
+    in_degrees += line.replace(line.find(" 0.700000 "), 10, " 40.107046 ");
+  }
+  const MapFromPoses made = map_from_poses(folder.write("degrees.log", in_degrees), {});
+  EXPECT_EQ(made.survey.headings, drivers::carmen::HeadingUnit::kDegree);
+  EXPECT_EQ(made.grid, map_from_poses(folder.write("room.log", log), {}).grid);
+}
+
 TEST(MapFromPoses, LeavesOutWhatIsNoReturn) {
   const test::TemporaryFolder folder;
   std::string log = room_log();
