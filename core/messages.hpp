@@ -104,6 +104,10 @@ struct Belief {
   /// The last scan at a tracked pose that did not follow from the one before; none: each has.
   std::optional<Timestamp> broke_off_at{};
   bool fits_worse = false;  ///< the map, than before scans broke off: the robot was carried, by all signs
+  /// Wheels and scans have carried the pose here from where it was surely right: what the map does not explain is new.
+  bool is_carried = false;
+  /// The pose rests on what this run has drawn where the map knew nothing, and tells nothing of what it knew before.
+  bool is_on_new_ground = false;
 };
 
 /// What the localizer believes at one scan.

@@ -94,8 +94,6 @@ std::optional<double> Localizer::fit_of_all() const { return state_->newest_fit_
 
 std::optional<sensor::OtherScale> Localizer::range_scale() const { return state_->range_scale.shown(); }
 
-bool Localizer::is_carried() const { return state_->judgement.is_carried(); }
-
 std::optional<motion::DriveCalibration> Localizer::calibration() const { return state_->tracker.calibration(); }
 
 const particles::ParticleSet* Localizer::particles() const {

@@ -61,9 +61,6 @@ class Localizer {
   /// What speaks for the pose: share of all beams that came back which the map explains, [0, 1]. Ends where the map
   /// knows nothing are no support. Nothing without a return.
   [[nodiscard]] std::optional<double> fit_of_all() const;
-  /// Wheels and scans have carried the pose here from where it was surely right: beams that the map does not explain
-  /// meet what is new.
-  [[nodiscard]] bool is_carried() const;
 
   /// The map explains the scans of some way clearly better with ranges of another scale; nothing else.
   [[nodiscard]] std::optional<sensor::OtherScale> range_scale() const;

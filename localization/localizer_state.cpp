@@ -19,6 +19,8 @@ constexpr double kTrustInNothing = 0.1;  // and before there is any; one that a 
 constexpr double kScansLagS = 0.5;    // a scan is at most so much older than the newest report of the wheels
 constexpr double kScansCeaseS = 5.0;  // without a scan: the particles go along with the wheels, step by step
 
+// Share of the returned beams that the map tells of: with fewer the scans' own motion leads, not the wheels'.
+constexpr double kTellsLittle = 0.5;
 constexpr double kBlindlyM = 1.0;  // deviation up to which the wheels alone may carry a pose
 
 constexpr double kClearlyBetter = 0.15;  // share of the ends that one hypothesis explains beyond another
@@ -111,14 +113,19 @@ void Localizer::State::take(const Odometry& report) {
 }
 
 motion::ScanInstant Localizer::State::witnessed(const Scan& scan, std::span<const RayInRobot> rays) {
-  const odometer::LaserMotion seen = witness.observe(scan, rays, odometry, odometry);
+  const bool leads = map_tells_little();
+  const odometer::LaserMotion seen = witness.observe(scan, rays, odometry, odometry, leads);
   const motion::ScanInstant now{scan.time, odometry.at(scan.time)};
   stood_m = seen.stood_m;
   judgement.carry({.is_continued = covers_the_gap(now),
-                   .fits_before = !seen.is_lost && !seen.contradicts,
+                   .fits_before = !seen.is_lost && (leads || !seen.contradicts),
                    .driven_m = seen.motion.position().norm()});
   counts.wheels_contradicted += seen.contradicts ? 1 : 0;
   return now;
+}
+
+bool Localizer::State::map_tells_little() const {
+  return static_cast<double>(ends.size()) < kTellsLittle * static_cast<double>(returned);
 }
 
 bool Localizer::State::has_jumped(const motion::ScanInstant& now) const {

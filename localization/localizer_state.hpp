@@ -112,6 +112,8 @@ struct Localizer::State {
   [[nodiscard]] bool searches() const;
   /// Is an obstacle of the map the first thing on the straight way that is not free?
   [[nodiscard]] bool meets_obstacle(const Point2& from, const Point2& to) const;
+  /// At the last scan: most of what came back ended where the map knows nothing.
+  [[nodiscard]] bool map_tells_little() const;
   /// The epoch of the odometry is another one than at the last scan.
   [[nodiscard]] bool has_jumped(const motion::ScanInstant& now) const;
   /// Do the wheels tell what has been driven since the last scan?

@@ -25,7 +25,7 @@ bool PoseWatch::is_unfit(const PoseNow& pose) {
   const Timestamp now = pose.estimate.time;
   const double passed_s = last_ ? std::max(0.0, seconds(now - *last_)) : 0.0;
   last_ = now;
-  const bool speaks_against = pose.is_carried && pose.fit && *pose.fit < mean_fit_;
+  const bool speaks_against = pose.estimate.belief.is_carried && pose.fit && *pose.fit < mean_fit_;
   if (pose.fit && !speaks_against) mean_fit_ += (1.0 - std::exp(-passed_s / kMemoryS)) * (*pose.fit - mean_fit_);
   return mean_fit_ < kLeastFit;
 }

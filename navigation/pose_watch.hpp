@@ -14,7 +14,6 @@ struct PoseNow {
   const Estimate& estimate;
   std::optional<double> fit;  ///< share of the scan's beams that the map explains; nothing: none ended where it knows
   bool start_fits = true;     ///< no pose was given, or scans have supported it
-  bool is_carried = false;    ///< from where it was surely right, by wheels and scans that agree: a misfit says nothing
 };
 
 class PoseWatch {

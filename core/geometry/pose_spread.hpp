@@ -26,6 +26,18 @@ inline constexpr double kMostChi2 = 16.27;
   return std::sqrt(std::max(0.0, middle + half));
 }
 
+/// What a pose's error becomes at the end of a motion that leads it from here to there, both in the frame of the error.
+[[nodiscard]] inline Eigen::Matrix3d carrying(const Pose2& from, const Pose2& to) {
+  Eigen::Matrix3d by_start = Eigen::Matrix3d::Identity();
+  by_start(0, 2) = from.y - to.y;
+  by_start(1, 2) = to.x - from.x;
+  return by_start;
+}
+/// The covariance of a pose at the end of a motion that is known exactly.
+[[nodiscard]] inline PoseCovariance carried(const PoseCovariance& covariance, const Pose2& from, const Pose2& to) {
+  return carrying(from, to) * covariance * carrying(from, to).transpose();
+}
+
 /// 1 σ of the pose that beams are read by.
 struct PoseDeviation {
   double position_m = 0.0;

@@ -132,7 +132,6 @@ void LocalizationStage::take_transients(std::uint32_t scan) {
 void LocalizationStage::pilot(const TrackedScan& tracked) {
   const PilotWord word = pilot_.observe(tracked, {.fit = step_.fit(),
                                                   .start_fits = step_.start_fits(),
-                                                  .is_carried = step_.is_carried(),
                                                   .transients = transients_.get(),
                                                   .times_let_drive = wiring_.telemetry.times_let_drive.value()});
   wiring_.telemetry.pose_stop.set(static_cast<std::uint8_t>(word.pose));

@@ -92,6 +92,7 @@ TrackedScan LocalizationStep::observe(Scan scan) {
   tell(fit_watch_.observe(tracked, {fit(), localizer_.fit_of_all(), localizer_.range_scale()}));
   tell(wheel_watch_.observe(tracked, localizer_.counts().wheels_contradicted));
   tracked.sensor_doubt = sensor_doubt();
+  tell_of_ground(tracked.estimate.belief.is_on_new_ground);
   learn_or_forget(tracked);
   last_map_from_robot_ = tracked.estimate.map_from_robot;
   last_odom_from_robot_ = localizer_.odom_from_robot(tracked.scan.time);
@@ -105,6 +106,13 @@ TrackedScan LocalizationStep::observe(Scan scan) {
 
 void LocalizationStep::tell(LogLine line) {
   if (!line.text.empty()) lines_.push_back(std::move(line));
+}
+
+void LocalizationStep::tell_of_ground(bool is_new) {
+  if (is_new == std::exchange(is_on_new_ground_, is_new)) return;
+  tell({is_new ? "the robot has left what the map knows: it is drawn as the robot goes and may drift; "
+                 "what was known before is left as it is meanwhile"
+               : "what the map knew before holds the pose again"});
 }
 
 /// Wheels that spin, or are pushed, tell nothing of how they err: what was learned on such a way is forgotten. It may

@@ -69,8 +69,6 @@ class LocalizationStep {
   [[nodiscard]] const std::vector<LogLine>& lines() const { return lines_; }
   /// As FitWatch::start_fits().
   [[nodiscard]] bool start_fits() const { return fit_watch_.start_fits(); }
-  /// As Localizer::is_carried().
-  [[nodiscard]] bool is_carried() const { return localizer_.is_carried(); }
   /// What is known of wheels and mount, without what was learned on the last way: whether scans and wheels contradict
   /// each other there is not known yet.
   [[nodiscard]] const std::optional<localization::motion::DriveCalibration>& calibration() const {
@@ -92,6 +90,7 @@ class LocalizationStep {
   void learn_or_forget(const TrackedScan& tracked);
   void tell(LogLine line);
   [[nodiscard]] SensorDoubt sensor_doubt() const;
+  void tell_of_ground(bool is_new);
 
   localization::Localizer localizer_;
   std::optional<localization::motion::DriveCalibration> calibration_;      // before the newest metre
@@ -102,6 +101,7 @@ class LocalizationStep {
   WheelWatch wheel_watch_;
   std::vector<LogLine> lines_;
   mapping::paper::DivergenceRatio ratio_;
+  bool is_on_new_ground_ = false;
   LocalizationRow row_;
   Pose2 last_map_from_robot_;
   std::optional<Pose2> last_odom_from_robot_;

@@ -29,7 +29,7 @@ PilotWord PilotStep::observe(const TrackedScan& tracked, const Seen& seen) {
   using navigation::StopReason;
   PilotWord word;
   word.command.time = tracked.scan.time;
-  word.pose = pose_watch_.observe({tracked.estimate, seen.fit, seen.start_fits, seen.is_carried});
+  word.pose = pose_watch_.observe({tracked.estimate, seen.fit, seen.start_fits});
   word.wheels_spin = tracked.stood_m > kSpinsForM;
   if (std::exchange(times_let_drive_, seen.times_let_drive) != seen.times_let_drive) dead_beams_.begin_anew();
   dead_beams_.observe(tracked.scan);

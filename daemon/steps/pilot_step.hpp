@@ -36,7 +36,6 @@ class PilotStep {
   struct Seen {
     std::optional<double> fit;                       ///< as LocalizationStep::fit()
     bool start_fits = true;                          ///< as FitWatch::start_fits()
-    bool is_carried = false;                         ///< as Localizer::is_carried()
     const TransientObstacles* transients = nullptr;  ///< what differs from the map now; null: not known
     std::uint32_t times_let_drive = 0;               ///< as Safety::times_let_drive()
   };

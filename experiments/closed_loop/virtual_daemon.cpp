@@ -96,7 +96,6 @@ struct VirtualDaemon::Process {
       seen.fit = run->localization().fit();
       for (const daemon::LogLine& line : run->localization().lines()) owner.log_.push_back(line.text);
       seen.start_fits = run->localization().start_fits();
-      seen.is_carried = run->localization().is_carried();
       seen.transients = run->store_scan().transients().get();
     }
     const daemon::PilotWord word = pilot.observe(tracked, seen);

@@ -38,7 +38,11 @@ PoseJudge::Shares shares_in(const hypotheses::HypothesisReport& report, bool may
 }  // namespace
 
 Judgement::Judgement(const OccupancyGrid& map, const JudgementParams& params)
-    : params_{params}, stability_{map.geometry()}, judge_{params.verdict}, continuity_{params.scan_break} {}
+    : params_{params},
+      stability_{map.geometry()},
+      judge_{params.verdict},
+      continuity_{params.scan_break},
+      known_ground_{map} {}
 
 void Judgement::start(double pose_right) {
   judge_.start(pose_right);
@@ -47,6 +51,7 @@ void Judgement::start(double pose_right) {
   is_checked_ = false;
   fixed_by_surfaces_ = false;
   carried_.end();
+  known_ground_.start();
 }
 
 Belief Judgement::belief() const {
@@ -54,6 +59,8 @@ Belief Judgement::belief() const {
   belief.is_checked = is_checked_;
   belief.broke_off_at = continuity_.broke_off_at();
   belief.fits_worse = continuity_.fits_worse();
+  belief.is_carried = is_carried();
+  belief.is_on_new_ground = known_ground_.is_left();
   return belief;
 }
 
@@ -80,6 +87,7 @@ void Judgement::observe(const View& view) {
   const std::span<const CheckedBeam> beams = check_.check(view.map, view.scan, view.rays, view.believed);
   judge_.observe(tallied(beams, stability_), passed, shares_in(view.hypotheses, continuity_.may_have_been_kidnapped()));
   is_checked_ = true;
+  known_ground_.observe(beams, view.map.geometry(), passed.driven_m);
   const bool is_sure = view.state == LocalizerState::kTracking && judge_.trust() >= kSurelyRight;
   if (is_sure && view.fits) carried_.start_from_here();
   earn(beams, view);

@@ -9,6 +9,7 @@
 #include "localization/belief/beam_check.hpp"
 #include "localization/belief/carried_pose.hpp"
 #include "localization/belief/continuity.hpp"
+#include "localization/belief/known_ground.hpp"
 #include "localization/belief/pose_verdict.hpp"
 #include "localization/belief/stability.hpp"
 #include "localization/belief/view_tally.hpp"
@@ -92,6 +93,7 @@ class Judgement {
   bool is_checked_ = false;                       ///< Belief::is_checked
   bool fixed_by_surfaces_ = false;
   CarriedPose carried_;
+  KnownGround known_ground_;
 };
 
 }  // namespace deltamap::localization::belief

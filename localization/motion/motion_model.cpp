@@ -60,6 +60,13 @@ MotionModelParams less_sure(MotionModelParams params, const MotionVariance& by) 
   return params;
 }
 
+MotionModelParams as_unsure(MotionModelParams params, const MotionVariance& as) {
+  params.turn_per_turn = params.turn_per_metre_rad = params.metre_per_metre = params.metre_per_turn_m = 0.0;
+  params.position_floor_m = std::sqrt(as.position_m2);
+  params.heading_floor_rad = std::sqrt(as.heading_rad2);
+  return params;
+}
+
 MotionNoise motion_noise(const TurnDriveTurn& motion, double unknown_s, const MotionModelParams& params) {
   const double rot1_rad = turned_rad(motion.rot1_rad);
   const bool on_the_spot = std::abs(motion.trans_m) < kDirectionIsNoiseM;

@@ -49,6 +49,9 @@ inline constexpr std::array kSlipsAhead{0.0, -0.75, 0.75, -1.5, 1.5};
 /// The model of a step that is more unsure than the wheels usually are.
 [[nodiscard]] MotionModelParams less_sure(MotionModelParams params, const MotionVariance& by);
 
+/// The model of a step that is exactly so unsure.
+[[nodiscard]] MotionModelParams as_unsure(MotionModelParams params, const MotionVariance& as);
+
 /// A motion between two odometry poses: turn, drive, turn.
 struct TurnDriveTurn {
   double rot1_rad = 0.0;

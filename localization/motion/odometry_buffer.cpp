@@ -73,6 +73,7 @@ void OdometryBuffer::clock_fell_back(Timestamp last_scan) {
 }
 
 void OdometryBuffer::begin_anew() {
+  led_until_.reset();
   before_restart_ = newest();
   count_ = 0;
 }
@@ -93,6 +94,7 @@ std::size_t OdometryBuffer::first_not_before(Timestamp time) const {
 
 std::optional<OdometryAt> OdometryBuffer::at(Timestamp time) const {
   std::optional<OdometryAt> told = told_at(time);
+  if (told && led_until_ && time <= *led_until_) told->led_since = led_since_;
   const double lag_s = lag_s_.value_or(errors_.lag_s);
   if (!told || lag_s == 0.0) return told;
   const Timestamp later = time + duration_from_seconds(lag_s);
@@ -116,6 +118,11 @@ void OdometryBuffer::correct(Timestamp time, const Pose2& slip, const MotionVari
   }
   frame_ = counted * frame_;
   slipped_ += variance;
+}
+
+void OdometryBuffer::led_by_scans(Timestamp from, Timestamp to) {
+  if (led_until_ != from) led_since_ = from;
+  led_until_ = to;
 }
 
 std::optional<OdometryAt> OdometryBuffer::told_at(Timestamp time) const {

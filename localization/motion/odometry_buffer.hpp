@@ -35,6 +35,8 @@ struct OdometryAt {
                                      ///< errors; the jump between two epochs counts as standing still
   MotionVariance slipped{};          ///< what corrections by the scans have left open up to then: it only grows
   double uncovered_s = 0.0;          ///< seconds between the instant and the nearest report that could speak for it
+  /// From then up to the instant scans have told the motion, not the wheels; nothing where wheels tell it.
+  std::optional<Timestamp> led_since{};
 };
 
 class OdometryBuffer {
@@ -54,6 +56,9 @@ class OdometryBuffer {
   /// The scans contradict the wheels: at this time the robot is elsewhere than they tell, by `slip`, seen from where
   /// they have it, and as unsure as `variance`. Holds from the last report before it on.
   void correct(Timestamp time, const Pose2& slip, const MotionVariance& variance);
+
+  /// Between two scans that follow each other the wheels have been corrected to what the scans tell.
+  void led_by_scans(Timestamp from, Timestamp to);
 
   /// A scan is older than the one before it: unless the reports have fallen back already, nothing is known until the
   /// next one comes, which goes on from where the last one was.
@@ -96,6 +101,8 @@ class OdometryBuffer {
   WheelErrors errors_;
   std::optional<double> lag_s_;
   MotionVariance slipped_;
+  std::optional<Timestamp> led_since_;
+  std::optional<Timestamp> led_until_;
   Pose2 frame_;  ///< of `odom_from_robot` as reported, in the corrected one
   std::vector<Report> ring_;
   std::size_t first_ = 0;

@@ -24,6 +24,7 @@ MotionSince motion_since(const ScanInstant& last, const ScanInstant& now, double
     return since;
   }
   since.motion = motion_between(last.odometry->continuous_odom_from_robot, now.odometry->continuous_odom_from_robot);
+  since.by_scans = now.odometry->led_since && *now.odometry->led_since <= last.time;
   since.slipped = more(last.odometry->slipped, now.odometry->slipped);
   since.unknown_s = std::min(now.odometry->uncovered_s, since.passed_s);
   if (now.odometry->epoch != last.odometry->epoch) {
@@ -47,6 +48,7 @@ MotionSince step_between(const ScanInstant& before, const ScanInstant& now) {
   step.unknown_s = step.passed_s;
   if (!now.odometry || !before.odometry) return step;
   step.motion = motion_between(before.odometry->continuous_odom_from_robot, now.odometry->continuous_odom_from_robot);
+  step.by_scans = now.odometry->led_since && *now.odometry->led_since <= before.time;
   step.slipped = more(before.odometry->slipped, now.odometry->slipped);
   const bool jumped = now.odometry->epoch != before.odometry->epoch;
   if (!jumped) step.unknown_s = std::min(now.odometry->uncovered_s, step.passed_s);

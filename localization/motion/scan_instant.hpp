@@ -19,6 +19,7 @@ struct MotionSince {
   double unknown_s = 0.0;    ///< not covered by odometry
   MotionVariance slipped{};  ///< where the scans have corrected the wheels: what they leave open
   double passed_s = 0.0;
+  bool by_scans = false;  ///< all along: `slipped` is all that is unsure
 };
 
 /// `usual_s`: between two updates; more than twice that is a silence, in which the wheels may have turned unseen where

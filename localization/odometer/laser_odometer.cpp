@@ -72,17 +72,6 @@ PoseCovariance turned(const PoseCovariance& covariance, double by_rad) {
   return rotation(by_rad) * covariance * rotation(-by_rad);
 }
 
-/// What a pose's error becomes by a motion that leads it from here to there.
-Eigen::Matrix3d carrying(const Pose2& from, const Pose2& to) {
-  Eigen::Matrix3d by_start = Eigen::Matrix3d::Identity();
-  by_start(0, 2) = from.y - to.y;
-  by_start(1, 2) = to.x - from.x;
-  return by_start;
-}
-PoseCovariance carried(const PoseCovariance& covariance, const Pose2& from, const Pose2& to) {
-  return carrying(from, to) * covariance * carrying(from, to).transpose();
-}
-
 bool is_a_drive(const Pose2& motion, double passed_s) {
   return motion.position().norm() <= 2.0 * std::min(passed_s + 1.0, 3.0) + 0.1 &&
          std::abs(motion.theta) <= 3.5 * (passed_s + 1.0);
@@ -125,7 +114,7 @@ std::optional<Pose2> searched(ScanFitter& fitter, const Pose2& around, double in
 double LaserOdometer::Step::way_m() const { return driven_m + kWayPerRad * turned_rad; }
 
 LaserMotion LaserOdometer::observe(const Scan& scan, std::span<const RayInRobot> rays,
-                                   const std::optional<WheelsAt>& wheels) {
+                                   const std::optional<WheelsAt>& wheels, bool leads) {
   LaserMotion answer;
   if (last_ && scan.time < *last_) *this = LaserOdometer{};
   const std::span<const LinePoint> points = finder_.points_of(scan, rays);
@@ -150,6 +139,7 @@ LaserMotion LaserOdometer::observe(const Scan& scan, std::span<const RayInRobot>
   lost_in_a_row_ = answer.is_lost ? lost_in_a_row_ + 1 : 0;
   if (!answer.is_lost) usual_inliers_ += (usual_inliers_ == 0.0 ? 1.0 : kNewest) * (fitted.inliers - usual_inliers_);
   believe(fitted, step, answer);
+  if (leads && step.by_wheels && !answer.slip && !answer.is_lost) lead(step, answer);
   const bool has_moved = standing_odds_ <= Standstill::kClearlyMoved && anchor_.claimed != Pose2{};
   const bool is_far = anchor_.claimed.position().norm() > kAnchorM;
   if (is_far && standing_odds_ > kTellsMore) {
@@ -332,6 +322,14 @@ void LaserOdometer::correct_wheels(const Pose2& slip, LaserMotion& answer) {
   answer.slip = slip;
   last_wheels_->odom_from_robot = last_wheels_->odom_from_robot * slip;
   compared_.clear();
+}
+
+/// The wheels go on from where the robot is, though nothing has contradicted them.
+void LaserOdometer::lead(const Step& step, LaserMotion& answer) {
+  answer.slip = motion_between(step.motion, answer.motion);
+  last_wheels_->odom_from_robot = last_wheels_->odom_from_robot * *answer.slip;
+  wheels_ = wheels_ * *answer.slip;
+  compared_.back().wheels = wheels_;
 }
 
 /// Never while it is lost, or a building is bent, but for each third scan: the scene itself may have changed.

@@ -48,8 +48,9 @@ class LaserOdometer {
  public:
   /// One more scan, `rays` freed of the robot's own motion; without wheels nothing speaks against the laser. Where the
   /// answer has a slip, the wheels' next pose is to be given with it: odom_from_robot * slip.
+  /// `leads`: nothing else tells of the pose, so the answer takes the wheels' place at each scan.
   [[nodiscard]] LaserMotion observe(const Scan& scan, std::span<const RayInRobot> rays,
-                                    const std::optional<WheelsAt>& wheels);
+                                    const std::optional<WheelsAt>& wheels, bool leads = false);
 
   /// In its own frame, from the first scan on.
   [[nodiscard]] const Pose2& start_from_robot() const { return pose_; }
@@ -92,6 +93,7 @@ class LaserOdometer {
   [[nodiscard]] Compared compare(const ScanFit& fitted, const Step& step, LaserMotion& answer) const;
   void believe(const ScanFit& fitted, const Step& step, LaserMotion& answer);
   void correct_wheels(const Pose2& slip, LaserMotion& answer);
+  void lead(const Step& step, LaserMotion& answer);
   void remember(std::span<const LinePoint> points, const LaserMotion& answer);
 
   LinePointFinder finder_;

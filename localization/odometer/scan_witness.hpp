@@ -15,9 +15,10 @@ namespace deltamap::localization::odometer {
 class ScanWitness {
  public:
   /// One more scan, `rays` freed of the robot's own motion. Afterwards `wheels` tell what is believed at its time.
+  /// `leads`: where the map tells little, the scans' motion takes the wheels' place even where they agree.
   /// `reports`: the same as they came, for the lag; where turns that came late have been corrected none is seen.
   LaserMotion observe(const Scan& scan, std::span<const RayInRobot> rays, motion::OdometryBuffer& wheels,
-                      const motion::OdometryBuffer& reports);
+                      const motion::OdometryBuffer& reports, bool leads = false);
 
   /// How much too late the wheels' stamps are, s; nothing until it is known.
   [[nodiscard]] std::optional<double> lag_s() const { return lag_.lag_s(); }

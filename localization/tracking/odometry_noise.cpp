@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/pose_spread.hpp"
 #include "localization/motion/motion_model.hpp"
 
 namespace deltamap::localization::tracking {
@@ -88,11 +89,8 @@ void OdometryNoiseEstimator::compare(const sensor::RefinedPose& believed) {
 sensor::RefinedPose predicted(const sensor::RefinedPose& believed, const Pose2& motion,
                               const OdometryNoiseEstimator& wheels) {
   const Pose2 pose = believed.map_from_robot * motion;
-  Eigen::Matrix3d by_start = Eigen::Matrix3d::Identity();
-  by_start(0, 2) = believed.map_from_robot.y - pose.y;
-  by_start(1, 2) = pose.x - believed.map_from_robot.x;
-  return {pose,
-          by_start * believed.covariance * by_start.transpose() + wheels.added(motion, believed.map_from_robot.theta)};
+  return {pose, carried(believed.covariance, believed.map_from_robot, pose) +
+                    wheels.added(motion, believed.map_from_robot.theta)};
 }
 
 }  // namespace deltamap::localization::tracking

@@ -33,6 +33,8 @@ void PoseFilter::forget() {
 sensor::RefinedPose PoseFilter::expected_at(const motion::ScanInstant& now) const {
   const motion::MotionSince step = motion::step_between(last_->instant, now);
   sensor::RefinedPose expected = predicted(last_->believed, step.motion, odometry_noise_);
+  if (step.by_scans)
+    expected.covariance = carried(last_->believed.covariance, last_->believed.map_from_robot, expected.map_from_robot);
   expected.covariance += motion::unknown_motion_covariance(motion_, step.unknown_s) + step.slipped.covariance();
   return expected;
 }

@@ -85,6 +85,7 @@ surfaces::UnknownOfCells SurfaceTracker::unknown_of_cells() const {
 }
 
 PoseCovariance SurfaceTracker::noise(const Pose2& motion, const motion::MotionSince& step) const {
+  if (step.by_scans) return motion::unknown_motion_covariance(motion_, step.unknown_s) + step.slipped.covariance();
   PoseCovariance added = odometry_noise_.added(motion, filter_.believed().map_from_robot.theta);
   added += motion::unknown_motion_covariance(motion_, step.unknown_s) + step.slipped.covariance();
   // Raised where corrections exceed what was expected, never lowered.

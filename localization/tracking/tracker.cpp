@@ -154,12 +154,17 @@ void Tracker::predict(const motion::ScanInstant& now) {
   }
   const motion::MotionSince since = motion::motion_since(*last_update_, now, params_.update.time_s);
   if (!update_due(since)) return;
-  motion::MotionModelParams motion = motion::less_sure(pose_filter_.particle_motion(), since.slipped);
+  motion::MotionModelParams motion = noise_of(since);
   motion.slip_probability = 0.0;  // only a scan can tell of a slip
   filter_.move(since.motion, since.unknown_s, motion);
   last_update_ = now;
   has_driven_blind_ = true;
   pose_filter_.predict(now);
+}
+
+motion::MotionModelParams Tracker::noise_of(const motion::MotionSince& since) const {
+  const motion::MotionModelParams wheels = pose_filter_.particle_motion();
+  return since.by_scans ? motion::as_unsure(wheels, since.slipped) : motion::less_sure(wheels, since.slipped);
 }
 
 bool Tracker::update_due(const motion::MotionSince& since) const {
@@ -170,7 +175,7 @@ bool Tracker::update_due(const motion::MotionSince& since) const {
 /// Moves and weighs the particles; they may be drawn anew afterwards.
 Tracker::Answer Tracker::update(const SeenScan& seen, const motion::MotionSince& since) {
   const bool sees = seen.ends.size() > 0;
-  const motion::MotionModelParams motion = motion::less_sure(pose_filter_.particle_motion(), since.slipped);
+  const motion::MotionModelParams motion = noise_of(since);
   if (last_update_) filter_.move(since.motion, since.unknown_s, motion);
   last_update_ = seen.now;
   if (!sees && surfaces_) surfaces_->predict(seen.now);

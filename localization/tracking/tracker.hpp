@@ -99,6 +99,7 @@ class Tracker {
   sensor::RefinedPose start_around(const sensor::RefinedPose& pose);
   [[nodiscard]] std::size_t particles_for(const PoseCovariance& spread) const;
   void let_surfaces_lead(const SeenScan& seen, Answer& answer);
+  [[nodiscard]] motion::MotionModelParams noise_of(const motion::MotionSince& since) const;
   [[nodiscard]] bool update_due(const motion::MotionSince& since) const;
   [[nodiscard]] std::span<const Pose2> slips(const SeenScan& seen);
   [[nodiscard]] double beam_share(const SeenScan& seen) const;

@@ -35,6 +35,7 @@ bool EvidencePhase::is_proven(votes::Question question, Cell block) const {
 void EvidencePhase::take_map(std::shared_ptr<const OccupancyGrid> map) {
   if (map == map_) return;
   const std::shared_ptr<const OccupancyGrid> before = std::exchange(map_, std::move(map));
+  if (before == nullptr) begun_with_ = map_;
   if (before == nullptr || before->geometry() != map_->geometry()) {
     small_objects_.begin(*map_);
     layer_ = votes::VoteLayer{params_.votes, map_->geometry()};
@@ -61,6 +62,24 @@ void EvidencePhase::count_beams() {
   for (const votes::BeamVerdict& beam : beams_) {
     short_beams_ += beam.ends_off_map ? 1 : 0;
     through_beams_ += beam.passed.empty() ? 0 : 1;
+  }
+}
+
+/// A pose that rests on what this run has drawn may have drifted away from the ground that was known before.
+void EvidencePhase::leave_out_known_ground(votes::Votes& votes) const {
+  const auto was_known = [this](std::uint32_t index) {
+    const CellBox cells = layer_.cells_of(layer_.blocks().cell_of(index));
+    for (int row = cells.first.row; row < cells.last.row; ++row) {
+      for (int column = cells.first.column; column < cells.last.column; ++column) {
+        const Point2 at = map_->geometry().centre_of({column, row});
+        if (begun_with_->at(begun_with_->geometry().cell_at(at)) != CellState::kUnknown) return true;
+      }
+    }
+    return false;
+  };
+  for (const auto i : {0, 1}) {
+    std::erase_if(votes.yes[i], was_known);
+    std::erase_if(votes.no[i], was_known);
   }
 }
 
@@ -264,7 +283,8 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   beams_ = votes::beam_evidence(*map_, clear_, tracked, params_.beams, std::move(beams_));
   count_beams();
   const std::vector<Cell> gone = small_objects_.missed(tracked, beams_, params_.beams);
-  const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, tracked.scan.bearing_step_rad);
+  votes::Votes votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, tracked.scan.bearing_step_rad);
+  if (estimate.belief.is_on_new_ground) leave_out_known_ground(votes);
   cast(votes);
   transients_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
   keyframes_.keep(tracked, votes.all);

@@ -70,6 +70,7 @@ class EvidencePhase {
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void count_beams();
   [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;
+  void leave_out_known_ground(votes::Votes& votes) const;
   void cast(const votes::Votes& votes);
   [[nodiscard]] bool is_proven(votes::Question question, Cell block) const;
   [[nodiscard]] std::optional<ScanSet> settled_regions(Timestamp time);
@@ -86,6 +87,7 @@ class EvidencePhase {
 
   EvidencePhaseParams params_;
   std::shared_ptr<const OccupancyGrid> map_;
+  std::shared_ptr<const OccupancyGrid> begun_with_;
   votes::VoteLayer layer_;
   TransientLayer transients_;
   scan_set::KeyframePool keyframes_;

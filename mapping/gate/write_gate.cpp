@@ -99,7 +99,8 @@ GateReason WriteGate::judged(const TrackedScan& tracked) {
   if (const auto doubt = reason_of(tracked.sensor_doubt)) return *doubt;
   if (estimate.belief.other_share > params_.most_other_share) return GateReason::kOtherHypothesis;
   if (estimate.belief.pose_right < params_.least_pose_right) return GateReason::kDoubtful;
-  const bool is_held = estimate.belief.stable.expected + estimate.belief.elsewhere.expected >= params_.least_expected;
+  const bool is_held = estimate.belief.is_carried ||
+                       estimate.belief.stable.expected + estimate.belief.elsewhere.expected >= params_.least_expected;
   if (!is_held || widest_deviation_m(estimate.noise_covariance()) > params_.most_deviation_m)
     return GateReason::kSpread;
   return GateReason::kOpen;

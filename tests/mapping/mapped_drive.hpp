@@ -30,7 +30,9 @@ class MappedDrive {
     constexpr double kPeriod_s = 0.2;
     for (double t = 0.0; t < duration_s; t += kPeriod_s, time_s += kPeriod_s) {
       const Pose2 pose = test::below_the_containers(time_s, speed_m_per_s);
-      const auto set = test::set_in(store.observe(test::drawn_scan(world(time_s), map, pose, time_s, random, noise)));
+      TrackedScan tracked = test::drawn_scan(world(time_s), map, pose, time_s, random, noise);
+      tracked.estimate.belief.is_on_new_ground = is_on_new_ground;
+      const auto set = test::set_in(store.observe(tracked));
       if (!set) continue;
       const scan_set::MapUpdate update = map_update(*map, *set, {});
       if (!update.accepted()) continue;
@@ -45,6 +47,7 @@ class MappedDrive {
   test::DrawnScanParams noise;
   double time_s = 0.0;
   int revisions = 0;
+  bool is_on_new_ground = false;
 };
 
 inline OccupancyGrid hall() { return test::drawn_hall(0.05); }

@@ -47,7 +47,7 @@ class Drive {
   }
   PoseNow pose() {
     estimate->time = now;
-    return {*estimate, fit, start_fits, is_carried};
+    return {*estimate, fit, start_fits};
   }
   AllowedMotion run_for(double s) {
     AllowedMotion motion;
@@ -73,7 +73,6 @@ class Drive {
   std::optional<Estimate> estimate;  ///< nothing: the pilot asks for none
   std::optional<double> fit = 0.9;
   bool start_fits = true;
-  bool is_carried = false;
   bool drives_on = false;  ///< by its wheels
   bool flickers = false;   ///< its scans have noise
   Timestamp now = kStart;
@@ -344,12 +343,12 @@ TEST(StopReasons, AreNoneForAMisfitWhereWheelsAndScansHaveCarriedThePoseOn) {
   Drive drive;
   drive.estimate = Estimate{};
   drive.estimate->state = LocalizerState::kTracking;
-  drive.is_carried = true;
+  drive.estimate->belief.is_carried = true;
   drive.fit = 0.05;
   EXPECT_EQ(drive.run_for(10.0).stop, StopReason::kNone);
-  drive.is_carried = false;
+  drive.estimate->belief.is_carried = false;
   EXPECT_EQ(drive.run_for(3.0).stop, StopReason::kPoseUnfit);
-  drive.is_carried = true;
+  drive.estimate->belief.is_carried = true;
   EXPECT_EQ(drive.run_for(3.0).stop, StopReason::kPoseUnfit) << "once it is unfit, a fit alone ends it";
   drive.fit = 0.9;
   EXPECT_EQ(drive.run_for(3.0).stop, StopReason::kNone);

@@ -49,6 +49,13 @@ TEST(MotionModel, NeverLetsAStandingRobotsGuessesFallTogether) {
   EXPECT_GT(noise.rot2_rad, 0.0);
 }
 
+TEST(MotionModel, IsAsUnsureAsScansThatHaveToldTheMotion) {
+  const MotionModelParams params = as_unsure({}, {.position_m2 = 4e-4, .heading_rad2 = 1e-4});
+  const MotionNoise noise = motion_noise(turn_drive_turn({1.0, 0.0, 1.0}), 0.0, params);
+  EXPECT_NEAR(noise.trans_m, 0.02, 1e-9);
+  EXPECT_LT(std::hypot(noise.rot1_rad, noise.rot2_rad), 0.0151) << "the wheels' own would be ten times as much";
+}
+
 TEST(MotionModel, DrawsWithTheMomentsItStates) {
   constexpr int kDraws = 40000;
   constexpr double kTolerance = 0.03;  // relative; the error of a deviation from 40000 draws is 0.4 %

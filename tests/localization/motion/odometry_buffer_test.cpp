@@ -60,6 +60,18 @@ TEST(OdometryBuffer, GoesOnFromWhereScansHaveCorrectedIt) {
   EXPECT_NEAR(buffer.at(at_s(0.5))->slipped.position_m2, 0.0, kSame);
 }
 
+TEST(OdometryBuffer, KnowsSinceWhenScansHaveToldTheMotion) {
+  OdometryBuffer buffer{{}};
+  for (int i = 0; i <= 30; ++i) buffer.add(report(0.1 * i, {0.1 * i, 0.0, 0.0}));
+  EXPECT_FALSE(buffer.at(at_s(1.0))->led_since);
+  buffer.led_by_scans(at_s(1.0), at_s(1.2));
+  buffer.led_by_scans(at_s(1.2), at_s(1.4));
+  EXPECT_EQ(buffer.at(at_s(1.4))->led_since, at_s(1.0));
+  EXPECT_FALSE(buffer.at(at_s(1.5))->led_since) << "no scan has told of it";
+  buffer.led_by_scans(at_s(2.0), at_s(2.2));  // not from 1.4 to 2.0 s
+  EXPECT_EQ(buffer.at(at_s(2.2))->led_since, at_s(2.0));
+}
+
 TEST(OdometryBuffer, ReadsLaggingStampsLater) {
   OdometryBuffer buffer{{}};
   for (int i = 0; i <= 10; ++i) buffer.add(report(0.1 * i, {0.01 * i * i, 0.0, 0.0}));

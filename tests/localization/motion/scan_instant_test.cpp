@@ -54,6 +54,15 @@ TEST(MotionSince, TakesNoTimeWhereTheClockHasFallenBack) {
   EXPECT_EQ(motion_since(scan_at(5.0, 0.0), without_wheels(1.0), kUsualS).unknown_s, 0.0);
 }
 
+TEST(MotionSince, IsByScansWhereTheyHaveToldAllOfIt) {
+  ScanInstant now = scan_at(3.0, 2.5);
+  EXPECT_FALSE(motion_since(scan_at(1.0, 2.0), now, kUsualS).by_scans);
+  now.odometry->led_since = scan_at(2.0, 0.0).time;
+  EXPECT_FALSE(motion_since(scan_at(1.0, 2.0), now, kUsualS).by_scans);
+  EXPECT_TRUE(motion_since(scan_at(2.0, 2.0), now, kUsualS).by_scans);
+  EXPECT_TRUE(step_between(scan_at(2.0, 2.0), now).by_scans);
+}
+
 TEST(StepBetween, IsUnknownForAllTheTimeWhereTheEpochHasChanged) {
   const MotionSince step = step_between(scan_at(1.0, 2.0), scan_at(9.0, 2.0, 1));
   EXPECT_NEAR(step.unknown_s, 8.0, kSameTime);

@@ -33,6 +33,21 @@ TEST(LaserOdometer, BelievesWheelsThatAreRight) {
   for (int i = 0; i < 40; ++i) EXPECT_FALSE(drive.step(i < 20 ? kForward : kArc).slip) << i;
 }
 
+/// Wheels that err too little from scan to scan to be contradicted.
+TEST(LaserOdometer, TakesTheirPlaceWhereItLeads) {
+  const OccupancyGrid world = test::room_with_pillar();
+  const Pose2 claimed{1.05 * kArc.x, 0.0, 0.95 * kArc.theta};
+  for (const bool leads : {false, true}) {
+    OdometerDrive drive{world, kInRoom};
+    drive.leads = leads;
+    int corrected = 0;
+    for (int i = 0; i < 150; ++i) corrected += drive.step(kArc, claimed).slip ? 1 : 0;
+    const double turned_off = std::abs(off(kInRoom, drive.truth(), drive.odom_from_robot()).theta);
+    EXPECT_EQ(turned_off < radians(6.0), leads) << degrees(turned_off);
+    EXPECT_EQ(corrected > 140, leads) << corrected;
+  }
+}
+
 TEST(LaserOdometer, NoticesWheelsThatSpinAtOnceAndLeavesTheRobotWhereItStands) {
   const OccupancyGrid world = test::room_with_pillar();
   OdometerDrive drive{world, kInRoom};

@@ -21,7 +21,7 @@ class OdometerDrive {
     time_ = time_ + duration_from_seconds(kPeriodS);
     scan_ = test::cast_scan(world_, truth_, time_, {}, random_);
     rays_ = motion::deskewed(scan_, {});
-    const LaserMotion seen = odometer_.observe(scan_, rays_, WheelsAt{odom_from_robot_, epoch_});
+    const LaserMotion seen = odometer_.observe(scan_, rays_, WheelsAt{odom_from_robot_, epoch_}, leads);
     if (seen.slip) odom_from_robot_ = odom_from_robot_ * *seen.slip;
     return seen;
   }
@@ -31,6 +31,8 @@ class OdometerDrive {
     ++epoch_;
     odom_from_robot_ = odom_from_robot;
   }
+  bool leads = false;  ///< nothing but the odometer tells of the pose
+
   [[nodiscard]] const Pose2& truth() const { return truth_; }
   /// With what the scans have corrected.
   [[nodiscard]] const Pose2& odom_from_robot() const { return odom_from_robot_; }

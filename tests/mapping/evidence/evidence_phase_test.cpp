@@ -33,6 +33,17 @@ TEST(EvidencePhase, ShowsTheScansOfASetWhileItIsCollectedAndWhileItWaits) {
   EXPECT_EQ(drive.store.stored(), StoredScans{}) << "nothing differs from the map any more";
 }
 
+/// A pose that has drifted over new ground draws on there, and says nothing of what was known before.
+TEST(EvidencePhase, LeavesKnownGroundAloneByAPoseThatRestsOnNewGround) {
+  const OccupancyGrid with_box = hall_with({9.0, 8.0}, {11.0, 8.5}, CellState::kOccupied);
+  for (const bool is_known : {true, false}) {
+    MappedDrive drive{is_known ? hall() : hall_with({8.0, 7.5}, {12.0, 9.5}, CellState::kUnknown)};
+    drive.is_on_new_ground = true;
+    drive.through(always(with_box), 30.0);
+    EXPECT_EQ(drive.revisions == 0, is_known) << drive.revisions;
+  }
+}
+
 TEST(EvidencePhase, IgnoresAPersonWhoWalks) {
   MappedDrive drive{hall()};
   drive.through(

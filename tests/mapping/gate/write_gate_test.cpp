@@ -80,6 +80,16 @@ TEST_F(DrivenGate, IsShutWhileASensorIsOtherThanBelieved) {
   EXPECT_EQ(shut_by_reason(gate.times()).count("mount"), 1u);
 }
 
+TEST(WriteGate, IsOpenWhereTheMapExpectsNothingWhileWheelsAndScansCarryThePoseOn) {
+  const auto without_beams = [](Estimate& e) { e.belief.elsewhere = e.belief.stable = {}; };
+  EXPECT_EQ(reason_after(without_beams), GateReason::kSpread);
+  EXPECT_EQ(reason_after([&](Estimate& e) {
+              without_beams(e);
+              e.belief.is_carried = true;
+            }),
+            GateReason::kOpen);
+}
+
 TEST(WriteGate, SeesTheSpreadAlongASlantingAxis) {
   EXPECT_EQ(reason_after([](Estimate& e) {
               e.covariance(0, 0) = e.covariance(1, 1) = 0.06;
