@@ -1,30 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <string_view>
 #include <utility>
 
 #include "core/counted.hpp"
+#include "core/utc_text.hpp"
 #include "drivers/port/byte_log.hpp"
 
 namespace deltamap::drivers::port {
 namespace {
 
 using pcapng::Damage;
-
-/// "2026-11-23T00:40:10.123Z"
-std::string utc_text(Timestamp time) {
-  const std::int64_t ms = unix_ns(time) / 1'000'000;
-  const auto whole_s = static_cast<std::time_t>(ms / 1000);
-  std::tm calendar{};
-  (void)gmtime_r(&whole_s, &calendar);
-  char day[32];
-  char text[48];
-  (void)std::strftime(day, sizeof day, "%Y-%m-%dT%H:%M:%S", &calendar);
-  (void)std::snprintf(text, sizeof text, "%s.%03dZ", day, static_cast<int>(ms % 1000));
-  return text;
-}
 
 /// A comment may hold several lines: some programs keep one comment a packet, and a person writes below what is there.
 std::vector<std::string_view> lines_of(const std::vector<std::string_view>& comments) {

@@ -8,31 +8,12 @@
 #include "core/counted.hpp"
 
 namespace deltamap::drivers::port {
-namespace {
-
-// The window counts what has passed: a clock that was set back, by so much at least, does not begin it anew. Less is
-// two ports out of order.
-constexpr double kSetBackS = 1.0;
-
-}  // namespace
-
-double ReplayPort::passed_s(Timestamp stamp) {
-  if (!began_) began_ = last_ = stamp;
-  const double back_s = seconds(last_ - stamp);
-  if (back_s > kSetBackS) {
-    began_ = *began_ - (last_ - stamp);
-    if (set_back_++ == 0) first_set_back_s_ = seconds(stamp - *began_);
-    farthest_back_s_ = std::max(farthest_back_s_, back_s);
-  }
-  last_ = stamp;
-  return std::max(0.0, seconds(stamp - *began_));
-}
-
 std::optional<ReplayedRecord> ReplayPort::next() {
   while (!is_over_) {
     auto record = reader_.next();
     if (!record) break;
-    const double after_s = passed_s(record->stamp);
+    const double after_s = passed_.after_s(record->stamp);
+    note_clock(after_s);
     is_over_ = after_s > window_.to_s;
     if (is_over_) break;
     packets_before_ += after_s < window_.from_s ? 1 : 0;
@@ -40,6 +21,12 @@ std::optional<ReplayedRecord> ReplayPort::next() {
     if (!went_out) return ReplayedRecord{std::move(*record), after_s >= window_.from_s};
   }
   return std::nullopt;
+}
+
+void ReplayPort::note_clock(double after_s) {
+  if (passed_.set_back_s() == 0.0) return;
+  if (set_back_++ == 0) first_set_back_s_ = after_s;
+  farthest_back_s_ = std::max(farthest_back_s_, passed_.set_back_s());
 }
 
 std::uint64_t ReplayPort::count_packets_after() {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "drivers/port/byte_log.hpp"
+#include "drivers/port/passed_time.hpp"
 
 namespace deltamap::drivers::port {
 
@@ -45,8 +46,7 @@ class ReplayPort {
   [[nodiscard]] std::uint64_t read_bytes() const { return reader_.read_bytes(); }
 
  private:
-  /// Seconds that have passed since the first record, whatever its clock was set to.
-  [[nodiscard]] double passed_s(Timestamp stamp);
+  void note_clock(double after_s);
 
   std::filesystem::path file_;
   ByteLogReader reader_;
@@ -56,8 +56,7 @@ class ReplayPort {
   std::uint64_t set_back_ = 0;     // times that the clock was
   double first_set_back_s_ = 0.0;  // after the first record
   double farthest_back_s_ = 0.0;
-  std::optional<Timestamp> began_;  // on the clock as it is set now
-  Timestamp last_{};
+  PassedTime passed_;
 };
 
 }  // namespace deltamap::drivers::port
