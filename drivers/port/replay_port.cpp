@@ -8,6 +8,7 @@
 #include "core/counted.hpp"
 
 namespace deltamap::drivers::port {
+
 std::optional<ReplayedRecord> ReplayPort::next() {
   while (!is_over_) {
     auto record = reader_.next();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap decode robot|laser HEX…`: frames by name and field, and the garbage between them.
+// `deltamap decode robot|laser HEX…` and `deltamap decode REC.pcapng`: frames by name and field, and the garbage
+// between them.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -7,7 +8,9 @@
 #include <stdexcept>
 
 #include "core/counted.hpp"
+#include "tool/decode/decode_recording.hpp"
 #include "tool/decode/decoded_frame.hpp"
+#include "tool/decode/frame_text.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
@@ -16,10 +19,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct DecodeOptions {
-  std::string line;
+  std::string source;
   std::vector<std::string> hex;
-  int measuring_mode = -1;
+  std::optional<std::uint8_t> measuring_mode;
+  RecordingToDecode recording;
   bool json = false;
+
+  [[nodiscard]] bool is_line() const { return source == "robot" || source == "laser"; }
 };
 
 std::vector<std::uint8_t> bytes_from(const std::vector<std::string>& words) {
@@ -68,17 +74,17 @@ std::vector<Garbage> garbage_between(const std::vector<DecodedFrame>& frames, st
   return garbage;
 }
 
-Json json_of(const DecodedFrame& frame) {
-  Json fields = Json::object();
-  for (const auto& [name, value] : frame.fields) {
-    std::visit([&fields, &key = name](const auto& v) { fields[key] = v; }, value);
-  }
-  return {{"name", frame.name}, {"from", frame.from}, {"at", frame.at}, {"bytes", frame.size}, {"fields", fields}};
+Json json_of_frame(const DecodedFrame& frame) {
+  return {{"name", frame.name},
+          {"from", frame.from},
+          {"at", frame.at},
+          {"bytes", frame.size},
+          {"fields", Json::parse(json_of(frame.fields))}};
 }
 
 void print_json(const DecodedStream& stream, const std::vector<Garbage>& garbage) {
   Json report{{"frames", Json::array()}, {"garbage", Json::array()}};
-  for (const DecodedFrame& frame : stream.frames) report["frames"].push_back(json_of(frame));
+  for (const DecodedFrame& frame : stream.frames) report["frames"].push_back(json_of_frame(frame));
   for (const Garbage& g : garbage) report["garbage"].push_back({{"at", g.at}, {"hex", hex_of(g.bytes)}});
   std::cout << report.dump(2) << '\n';
 }
@@ -86,11 +92,8 @@ void print_json(const DecodedStream& stream, const std::vector<Garbage>& garbage
 void print_text(const DecodedStream& stream, const std::vector<Garbage>& garbage) {
   for (const DecodedFrame& frame : stream.frames) {
     std::cout << frame.name << "  (from " << frame.from << ", byte " << frame.at << ", " << counted(frame.size, "byte")
-              << ")\n";
-    const Json fields = json_of(frame)["fields"];
-    for (const auto& [name, value] : fields.items()) {
-      std::cout << "  " << name << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << '\n';
-    }
+              << ")\n"
+              << text_of(frame.fields, std::string::npos);
   }
   for (const Garbage& g : garbage) {
     std::cout << "garbage  (byte " << g.at << ", " << counted(g.bytes.size(), "byte") << "): " << hex_of(g.bytes)
@@ -105,12 +108,10 @@ std::string why_nothing(const DecodedStream& stream) {
   return "no header";
 }
 
-void decode(const DecodeOptions& options) {
+void decode_hex(const DecodeOptions& options) {
   const std::vector<std::uint8_t> bytes = bytes_from(options.hex);
-  const std::optional<std::uint8_t> mode =
-      options.measuring_mode >= 0 ? std::optional{static_cast<std::uint8_t>(options.measuring_mode)} : std::nullopt;
   const DecodedStream stream =
-      options.line == "robot" ? decoded_robot_stream(bytes) : decoded_laser_stream(bytes, mode);
+      options.source == "robot" ? decoded_robot_stream(bytes) : decoded_laser_stream(bytes, options.measuring_mode);
   const std::vector<Garbage> garbage = garbage_between(stream.frames, bytes);
   if (options.json) {
     print_json(stream, garbage);
@@ -118,21 +119,47 @@ void decode(const DecodeOptions& options) {
     print_text(stream, garbage);
   }
   if (stream.frames.empty()) {
-    throw std::runtime_error("decode " + options.line + ": no frame in " + std::to_string(bytes.size()) +
+    throw std::runtime_error("decode " + options.source + ": no frame in " + std::to_string(bytes.size()) +
                              " bytes: " + why_nothing(stream));
   }
+}
+
+void decode(DecodeOptions& options) {
+  if (options.is_line()) {
+    if (options.hex.empty()) throw CLI::ValidationError("HEX", "bytes of the line are missing");
+    return decode_hex(options);
+  }
+  if (!options.hex.empty()) {
+    throw CLI::ValidationError("SOURCE", "\"" + options.source + "\" is neither robot nor laser, and HEX is for them");
+  }
+  options.recording.file = options.source;
+  options.recording.measuring_mode = options.measuring_mode;
+  options.recording.as_json = options.json;
+  decode_recording(options.recording);
 }
 
 }  // namespace
 
 void add_decode(CLI::App& app) {
   auto options = std::make_shared<DecodeOptions>();
-  CLI::App* command = app.add_subcommand("decode", "frames of either serial line, by name and field");
-  command->add_option("line", options->line, "robot or laser")->required()->check(CLI::IsMember({"robot", "laser"}));
-  command->add_option("HEX", options->hex, "bytes in hex, in one word or many")->required();
-  command->add_option("--measuring-mode", options->measuring_mode, "laser: reads ranges in this mode (byte 5 of 74h)")
+  RecordingToDecode& recording = options->recording;
+  CLI::App* command =
+      app.add_subcommand("decode", "frames of a recording, or of bytes of either serial line, by name and field");
+  command->add_option("SOURCE", options->source, "a recording; or robot or laser, whose line HEX is of")->required();
+  command->add_option("HEX", options->hex, "bytes in hex, in one word or many");
+  command
+      ->add_option("--measuring-mode", options->measuring_mode,
+                   "laser: reads ranges in this mode (byte 5 of 74h); of a recording by default as the laser tells")
       ->check(CLI::Range(0, 63));
-  command->add_flag("--json", options->json, "print JSON");
+  command->add_option("--from", recording.window.from_s, "recording: seconds after the first byte to begin at")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--to", recording.window.to_s, "recording: seconds after the first byte to end at")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--kind", recording.kinds,
+                   "recording: only frames of this name (scan, SIP, VEL, note, garbage, ...); repeatable")
+      ->allow_extra_args(false);
+  command->add_flag("--json", options->json, "print JSON; of a recording a line each");
   command->callback([options] { decode(*options); });
 }
 

@@ -12,6 +12,7 @@ namespace deltamap::tool {
 namespace {
 
 using namespace drivers::lms200;
+using drivers::port::Direction;
 
 constexpr unsigned kAnyBaud = 38400;  // times do not matter here
 
@@ -159,8 +160,10 @@ bool add_request(const Telegram& telegram, NamedFields& fields) {
   return true;
 }
 
-DecodedFrame frame_from(const Telegram& telegram, Sender sender, std::optional<std::uint8_t> measuring_mode) {
-  const bool is_from_laser = sender == Sender::kDevice;
+}  // namespace
+
+DecodedFrame laser_frame(const Telegram& telegram, Direction direction, std::optional<std::uint8_t> measuring_mode) {
+  const bool is_from_laser = direction == Direction::kIn;
   DecodedFrame frame;
   frame.from = is_from_laser ? "laser" : "host";
   frame.size = 1;
@@ -178,16 +181,22 @@ DecodedFrame frame_from(const Telegram& telegram, Sender sender, std::optional<s
   } else {
     frame.name = telegram.kind == Telegram::Kind::kAck ? "ACK" : "NAK";
   }
-  // Byte i was handed in at i ns.
-  frame.at = static_cast<std::size_t>(unix_ns(telegram.received)) + 1 - frame.size;
   return frame;
 }
 
+namespace {
+
 DecodedStream stream_from(std::span<const std::uint8_t> bytes, Sender sender, std::optional<std::uint8_t> mode) {
+  const Direction direction = sender == Sender::kDevice ? Direction::kIn : Direction::kOut;
   DecodedStream stream;
   TelegramDecoder decoder{sender, kAnyBaud};
   const auto take = [&](const std::vector<Telegram>& telegrams) {
-    for (const Telegram& telegram : telegrams) stream.frames.push_back(frame_from(telegram, sender, mode));
+    for (const Telegram& telegram : telegrams) {
+      stream.frames.push_back(laser_frame(telegram, direction, mode));
+      DecodedFrame& frame = stream.frames.back();
+      // Byte i was handed in at i ns.
+      frame.at = static_cast<std::size_t>(unix_ns(telegram.received)) + 1 - frame.size;
+    }
   };
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     take(decoder.decode(bytes.subspan(i, 1), timestamp_from_ns(static_cast<std::int64_t>(i))));

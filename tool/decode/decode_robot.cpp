@@ -10,6 +10,7 @@ namespace deltamap::tool {
 namespace {
 
 using namespace drivers::pioneer;
+using drivers::port::Direction;
 
 constexpr unsigned kAnyBaud = 9600;  // times do not matter here
 
@@ -134,40 +135,89 @@ DecodedFrame io_frame(const IoReadings& io) {
   return frame;
 }
 
-DecodedFrame frame_from(const Packet& packet) {
-  if (has_form_of_command(packet.data)) {
-    if (const auto command = decoded_command(packet.data)) return command_frame(*command);
+DecodedFrame identity_frame(const RobotIdentity& identity) {
+  return {
+      "SYNC2 reply", "robot", 0, 0, {{"name", identity.name}, {"type", identity.type}, {"subtype", identity.subtype}}};
+}
+
+DecodedFrame encoder_frame(const EncoderCounts& encoder) {
+  return {"ENCODERpac",
+          "robot",
+          0,
+          0,
+          {{"left_ticks", whole(encoder.left_ticks)}, {"right_ticks", whole(encoder.right_ticks)}}};
+}
+
+/// Of packets whose content is not read (A10), and of the bare echoes (A4).
+std::string name_of_type(std::uint8_t type) {
+  switch (type) {
+    case kSync0:
+    case kSync1:
+    case kSync2:
+      return "SYNC" + std::to_string(type) + " echo";
+    case 0x9A:
+      return "IMUpac";
+    case 0xB0:
+    case 0xB8:
+    case 0xC8:
+      return "AUX port";
+    case 0xC0:
+      return "compass";
+    case 0xE0:
+      return "gripper";
+    case 0xF8:
+      return "joystick";
+    case 0xFA:
+      return "battery";
+    default:
+      return "packet of unknown type";
   }
+}
+
+std::optional<DecodedFrame> reply_frame(const Packet& packet) {
   if (const auto sip = decoded_sip(packet.data)) return sip_frame(*sip);
   if (const auto config = decoded_config(packet.data)) return config_frame(*config);
-  if (const auto identity = decoded_identity(packet.data)) {
-    return {"SYNC2 reply",
-            "robot",
-            0,
-            0,
-            {{"name", identity->name}, {"type", identity->type}, {"subtype", identity->subtype}}};
-  }
-  if (const auto encoder = decoded_encoder(packet.data)) {
-    return {"ENCODERpac",
-            "robot",
-            0,
-            0,
-            {{"left_ticks", whole(encoder->left_ticks)}, {"right_ticks", whole(encoder->right_ticks)}}};
-  }
+  if (const auto identity = decoded_identity(packet.data)) return identity_frame(*identity);
+  if (const auto encoder = decoded_encoder(packet.data)) return encoder_frame(*encoder);
   if (const auto gyro = decoded_gyro(packet.data)) return gyro_frame(*gyro);
   if (const auto io = decoded_io(packet.data)) return io_frame(*io);
-  return {"packet of unknown type", "either", 0, 0, {{"type", whole(packet.type())}}};
+  return std::nullopt;
+}
+
+DecodedFrame raw_frame(const Packet& packet, const std::string& from) {
+  DecodedFrame frame{from == "host" ? "packet of unknown type" : name_of_type(packet.type()), from, 0, 0, {}};
+  frame.fields.emplace_back("type", whole(packet.type()));
+  const auto body = packet.body();
+  if (!body.empty()) frame.fields.emplace_back("data", std::vector<std::int64_t>(body.begin(), body.end()));
+  return frame;
+}
+
+DecodedFrame frame_from(const Packet& packet, std::optional<Direction> direction) {
+  const bool may_be_command = direction ? *direction == Direction::kOut : has_form_of_command(packet.data);
+  if (may_be_command) {
+    if (const auto command = decoded_command(packet.data)) return command_frame(*command);
+  }
+  if (direction != Direction::kOut) {
+    if (auto reply = reply_frame(packet)) return std::move(*reply);
+  }
+  return raw_frame(packet, !direction ? "either" : *direction == Direction::kOut ? "host" : "robot");
 }
 
 }  // namespace
+
+DecodedFrame robot_frame(const Packet& packet, std::optional<Direction> direction) {
+  DecodedFrame frame = frame_from(packet, direction);
+  frame.size = packet.data.size() + kFrameOverhead;
+  if (direction == Direction::kOut) frame.from = "host";
+  return frame;
+}
 
 DecodedStream decoded_robot_stream(std::span<const std::uint8_t> bytes) {
   DecodedStream stream;
   PacketDecoder decoder{kAnyBaud};
   const auto take = [&](const std::vector<Packet>& packets) {
     for (const Packet& packet : packets) {
-      DecodedFrame frame = frame_from(packet);
-      frame.size = packet.data.size() + kFrameOverhead;
+      DecodedFrame frame = robot_frame(packet, std::nullopt);
       // Byte i was handed in at i ns.
       frame.at = static_cast<std::size_t>(unix_ns(packet.received)) + 1 - frame.size;
       stream.frames.push_back(std::move(frame));

@@ -11,6 +11,14 @@
 #include <vector>
 
 #include "drivers/decoder_counts.hpp"
+#include "drivers/port/byte_record.hpp"
+
+namespace deltamap::drivers::pioneer {
+struct Packet;
+}
+namespace deltamap::drivers::lms200 {
+struct Telegram;
+}
 
 namespace deltamap::tool {
 
@@ -36,11 +44,20 @@ struct DecodedStream {
   drivers::DecoderCounts counts;     ///< why the rest is garbage
 };
 
+/// A packet of the Pioneer's line. Commands and replies share numbers: where the direction is not known, the form tells
+/// which it is.
+[[nodiscard]] DecodedFrame robot_frame(const drivers::pioneer::Packet& packet,
+                                       std::optional<drivers::port::Direction> direction);
+
+/// A telegram or acknowledgement of the laser's line. Ranges are read where the measuring mode is given: scans do not
+/// tell it.
+[[nodiscard]] DecodedFrame laser_frame(const drivers::lms200::Telegram& telegram, drivers::port::Direction direction,
+                                       std::optional<std::uint8_t> measuring_mode);
+
 /// Frames of the Pioneer's line, from either end (protocols.md A).
 [[nodiscard]] DecodedStream decoded_robot_stream(std::span<const std::uint8_t> bytes);
 
-/// Telegrams of the laser's line, from either end (protocols.md B). Ranges are read where the measuring mode is given:
-/// scans do not tell it.
+/// Telegrams of the laser's line, from either end (protocols.md B).
 [[nodiscard]] DecodedStream decoded_laser_stream(std::span<const std::uint8_t> bytes,
                                                  std::optional<std::uint8_t> measuring_mode);
 
