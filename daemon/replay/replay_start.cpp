@@ -18,18 +18,27 @@ std::string content_of(const StartMap& start) {
   return content;
 }
 
+constexpr const char* kKeptPoseIsMissing = "not obeyed: it began with a pose that was kept";
+
 std::string journal_state(const RecordedRun& recorded, const ReplayJob& job, const RunIdentity& identity) {
+  if (const std::string why = why_never_obeyed(recorded); !why.empty()) return why;
   const auto& run = recorded.journal.run();
-  if (!run) return "none";
-  if (recorded.faults.is_unchecked) return "not obeyed: whether records are missing cannot be checked";
-  if (recorded.journal.has_gap()) return "not obeyed: records are missing";
-  if (run->memory != 0 && identity.memory == 0) return "not obeyed: it began with a pose that was kept";
+  if (run->memory != 0 && identity.memory == 0) return kKeptPoseIsMissing;
   if (*run != identity) return "not obeyed: other settings or map";
   if (job.from_s > 0.0) return "not obeyed: another start";
   return "obeyed";
 }
 
 }  // namespace
+
+std::string why_never_obeyed(const RecordedRun& recorded) {
+  const auto& run = recorded.journal.run();
+  if (!run) return "none";
+  if (recorded.faults.is_unchecked) return "not obeyed: whether records are missing cannot be checked";
+  if (recorded.journal.has_gap()) return "not obeyed: records are missing";
+  if (run->memory != 0 && !recorded.begin.begin()) return kKeptPoseIsMissing;
+  return {};
+}
 
 RecordedRun recorded_run(const ReplayJob& job) {
   drivers::port::ReplayPort port{job.recording, {job.from_s, job.to_s}};

@@ -24,6 +24,10 @@ struct RecordedRun {
 /// std::runtime_error as ByteLogReader does.
 [[nodiscard]] RecordedRun recorded_run(const ReplayJob& job);
 
+/// Why no settings and map make a replay obey its journal: "none" where there is none, "not obeyed: …"; empty: those of
+/// the run do.
+[[nodiscard]] std::string why_never_obeyed(const RecordedRun& recorded);
+
 struct ReplayStart {
   StartMap start;
   std::string began;    ///< what of the recorded run's beginning is used, or why not

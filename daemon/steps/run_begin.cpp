@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::string_view kHead = "began from";
+constexpr std::string_view kSettingHead = "setting ";
 constexpr std::size_t kTileBytes = localization::belief::StabilityRecord::kBytesATile;
 
 std::string_view as_text(std::span<const std::uint8_t> bytes) {
@@ -145,7 +146,19 @@ std::vector<std::string> first_notes(const Settings& settings, std::uint64_t map
   if (settings.recording.file.empty()) return {};
   std::vector<std::string> notes{note_of(RunIdentity{settings_fingerprint(settings), map, begin.memory})};
   for (std::string& note : begin_notes(begin)) notes.push_back(std::move(note));
+  for (const auto& [key, value] : changed_settings(settings)) {
+    // A reader takes a note apart at line ends.
+    if (value.find('\n') == std::string::npos) notes.push_back(std::string(kSettingHead) + key + ": " + value);
+  }
   return notes;
+}
+
+std::optional<std::pair<std::string, std::string>> setting_of_note(std::string_view note) {
+  if (!note.starts_with(kSettingHead)) return std::nullopt;
+  note.remove_prefix(kSettingHead.size());
+  const std::size_t colon = note.find(": ");
+  if (colon == std::string_view::npos) return std::nullopt;
+  return std::pair{std::string(note.substr(0, colon)), std::string(note.substr(colon + 2))};
 }
 
 BeginReader::BeginReader() : parts_{kHead} {}

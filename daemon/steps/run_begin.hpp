@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "daemon/records/note_parts.hpp"
@@ -25,9 +26,12 @@ struct RunBegin {
 /// Empty where the run began from M_0 alone. Each note fits a pcapng comment.
 [[nodiscard]] std::vector<std::string> begin_notes(const RunBegin& begin);
 
-/// What a run begins from: enough for a replay to obey its journal. `map`: grid_hash() of the map it begins on. Empty
-/// where nothing is recorded.
+/// What a run begins from: enough for a replay to obey its journal; and, for people, every setting that is not as
+/// delivered. `map`: grid_hash() of the map it begins on. Empty where nothing is recorded.
 [[nodiscard]] std::vector<std::string> first_notes(const Settings& settings, std::uint64_t map, const RunBegin& begin);
+
+/// Key and value of such a setting; nothing for any other note.
+[[nodiscard]] std::optional<std::pair<std::string, std::string>> setting_of_note(std::string_view note);
 
 /// Puts the notes of one recording together again.
 class BeginReader {
