@@ -47,6 +47,7 @@ for file in /lib/systemd/system/deltamap.service /lib/udev/rules.d/60-deltamap.r
   /usr/share/doc/deltamap/examples/deltamap-page.conf; do
   holds "$file" is 'root:root 644' "$file"
 done
+holds "Wireshark finds both protocols" is 'root:root 644' /usr/lib/*/wireshark/plugins/deltamap.lua
 for folder in /var/lib/deltamap /var/lib/deltamap/maps /var/lib/deltamap/recordings; do
   holds "$folder" is 'deltamap:deltamap 750' "$folder"
 done
