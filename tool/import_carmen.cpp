@@ -11,6 +11,7 @@
 #include "core/counted.hpp"
 #include "drivers/carmen/carmen_bytes.hpp"
 #include "drivers/port/byte_log.hpp"
+#include "tool/draft.hpp"
 #include "tool/progress.hpp"
 #include "tool/subcommands.hpp"
 
@@ -18,31 +19,6 @@ namespace deltamap::tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A file that appears under its name only when it is whole.
-class Draft {
- public:
-  explicit Draft(fs::path file) : file_{std::move(file)}, draft_{file_.string() + ".part"} {}
-  ~Draft() {
-    std::error_code ignored;
-    if (!kept_) fs::remove(draft_, ignored);
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return draft_; }
-  void keep() {
-    std::error_code error;
-    fs::rename(draft_, file_, error);
-    if (error) throw std::runtime_error(file_.string() + ": cannot be written: " + error.message());
-    kept_ = true;
-  }
-
- private:
-  fs::path file_;
-  fs::path draft_;
-  bool kept_ = false;
-};
 
 /// The robot's pose at any time, from the ODOM lines of a log; held where the lines end, the origin where there are
 /// none.

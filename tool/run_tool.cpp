@@ -31,6 +31,7 @@ int run_tool(int argc, const char* const* argv) {
       *app.add_subcommand("calibrate", "fit the robot's parameters to a recording")->require_subcommand(1);
   add_calibrate_motion(calibrate);
   add_decode(app);
+  add_export(app);
   add_info(app);
   add_replay(app);
   add_view(app);

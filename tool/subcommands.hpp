@@ -11,6 +11,7 @@ namespace deltamap::tool {
 
 void add_ctl(CLI::App& app);
 void add_decode(CLI::App& app);
+void add_export(CLI::App& app);
 void add_info(CLI::App& app);
 void add_score(CLI::App& app);
 void add_sim(CLI::App& app);
