@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap replay`: the whole pipeline on recorded bytes, as fast as it can.
+// `deltamap replay`: the whole pipeline on recorded bytes, as fast as it can; or the recorded devices for another
+// client.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
@@ -8,6 +9,7 @@
 
 #include "core/counted.hpp"
 #include "daemon/replay/replay_run.hpp"
+#include "tool/play/play_recording.hpp"
 #include "tool/progress.hpp"
 #include "tool/subcommands.hpp"
 
@@ -22,6 +24,7 @@ struct ReplayOptions {
   std::vector<std::string> overrides;
   std::string initial_pose;
   std::optional<std::int64_t> seed;
+  std::string to_pty;
   bool as_json = false;
 };
 
@@ -59,16 +62,27 @@ void run_replay(ReplayOptions& options) {
     print_summary(report);
 }
 
+void replay_or_play(ReplayOptions& options) {
+  const daemon::ReplayJob& job = options.job;
+  if (!options.to_pty.empty()) return play_recording(job.recording, options.to_pty, {job.from_s, job.to_s});
+  if (job.map.empty()) throw CLI::RequiredError("--map");
+  if (job.out.empty()) throw CLI::RequiredError("--out");
+  run_replay(options);
+}
+
 }  // namespace
 
 void add_replay(CLI::App& app) {
   auto* command = app.add_subcommand("replay", "the whole pipeline on recorded bytes, as fast as it can");
   auto options = std::make_shared<ReplayOptions>();
   command->add_option("recording", options->job.recording, "pcapng of both ports")->required();
-  command->add_option("--map", options->job.map, "M_0, map_server YAML")->required();
+  command->add_option("--map", options->job.map, "M_0, map_server YAML; required, as is --out, but with --to-pty");
   command->add_option("--config", options->config, "settings, YAML; as delivered where it is not given");
-  command->add_option("--out", options->job.out, "folder for trajectory.tum, map, changes.jsonl, report.json")
-      ->required();
+  command->add_option("--out", options->job.out, "folder for trajectory.tum, map, changes.jsonl, report.json");
+  command->add_option(
+      "--to-pty", options->to_pty,
+      "play the recorded devices in real time on two pseudo-terminals, linked as robot and laser in this "
+      "folder, and tell where their client says something else than was recorded");
   command->add_option("--seed", options->seed, "over the settings' seed");
   command->add_option("--initial-pose", options->initial_pose,
                       "X,Y,DEG of the robot in the map at the first scan; over the settings' pose");
@@ -82,7 +96,7 @@ void add_replay(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--set", options->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
   command->add_flag("--json", options->as_json, "print the report as JSON");
-  command->callback([options] { run_replay(*options); });
+  command->callback([options] { replay_or_play(*options); });
 }
 
 }  // namespace deltamap::tool
