@@ -11,8 +11,9 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <semaphore>
 #include <utility>
+
+#include "core/semaphore.hpp"
 
 namespace deltamap {
 
@@ -97,7 +98,7 @@ class Channel {
   std::size_t slot_count_;                                // one more than the capacity: full and empty differ
   alignas(kCacheLine) std::atomic<std::size_t> head_{0};  // written by the receiver
   alignas(kCacheLine) std::atomic<std::size_t> tail_{0};  // written by the sender
-  std::counting_semaphore<> filled_{0};
+  Semaphore filled_;
   std::atomic<bool> closed_{false};
   std::atomic<std::uint64_t> refused_{0};
 };

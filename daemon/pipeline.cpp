@@ -132,7 +132,7 @@ control::ControlDesk::Wiring Pipeline::State::control_wiring() {
           .reload = [this] { return reload(); },
           .record =
               [this](bool goes_on, std::uint64_t ticket) {
-                return recorder.from_control().send(RecordOrder{goes_on, ticket});
+                return recorder.from_control().try_send(RecordOrder{goes_on, ticket});
               },
           .set_log_level = [this](LogLevel level) { return set_log_level(level); },
           .patience_s = options.control_patience_s};

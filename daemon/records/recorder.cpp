@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "drivers/port/port_clock.hpp"
@@ -11,6 +12,8 @@ namespace deltamap::daemon {
 namespace {
 
 constexpr std::chrono::seconds kFlushPeriod{1};
+// A robot's bytes come in hundreds of pieces a second: each look takes all that have come.
+constexpr std::chrono::milliseconds kLookPeriod{50};
 constexpr const char* kOnlyFromTheStart =
     "a recording begins with the run, for a replay needs what the devices said and the map was then; set it and "
     "restart";
@@ -62,7 +65,7 @@ void Recorder::run() {
       flush();
       last_flush = now;
     }
-    if (!found) (void)bell_.try_acquire_for(kFlushPeriod);
+    if (!closed) std::this_thread::sleep_for(kLookPeriod);
   }
   flush();
   if (trajectory_) trajectory_->close(now_);
@@ -71,16 +74,12 @@ void Recorder::run() {
   if (recording_) recording_->close(now_);
 }
 
-void Recorder::close() {
-  closed_.store(true, std::memory_order_release);
-  bell_.release();
-}
+void Recorder::close() { closed_.store(true, std::memory_order_release); }
 
 bool Recorder::drain(RecorderInput& input) {
   bool found = false;
-  while (auto item = input.take()) {
+  while (auto item = input.try_receive()) {
     write(std::move(*item));
-    (void)bell_.try_acquire();
     found = true;
   }
   return found;

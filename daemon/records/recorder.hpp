@@ -6,7 +6,6 @@
 
 #include <memory>
 #include <optional>
-#include <semaphore>
 #include <variant>
 #include <vector>
 
@@ -39,24 +38,7 @@ using RecorderItem =
                  std::unique_ptr<const SaveOrder>, RecordOrder, LogLine>;
 
 /// One sender's way to the recorder.
-class RecorderInput {
- public:
-  RecorderInput(std::size_t capacity, std::counting_semaphore<>& bell) : channel_{capacity}, bell_{bell} {}
-
-  /// Never waits; false where it was refused.
-  bool send(RecorderItem&& item) {
-    const bool sent = channel_.try_send(std::move(item));
-    bell_.release();
-    return sent;
-  }
-  /// Receiver only.
-  [[nodiscard]] std::optional<RecorderItem> take() { return channel_.try_receive(); }
-  [[nodiscard]] std::uint64_t refused() const { return channel_.refused(); }
-
- private:
-  Channel<RecorderItem> channel_;
-  std::counting_semaphore<>& bell_;
-};
+using RecorderInput = Channel<RecorderItem>;
 
 class Recorder {
  public:
@@ -85,7 +67,7 @@ class Recorder {
   RecorderInput& from_map() { return from_map_; }
   RecorderInput& from_control() { return from_control_; }
 
-  /// The recorder thread's work, until close().
+  /// The recorder thread's work, until close(): looks for items every 50 ms, whatever comes meanwhile.
   void run();
   [[nodiscard]] const Pulse& pulse() const { return pulse_; }
   /// When all senders have ended: what they sent is still written.
@@ -114,12 +96,11 @@ class Recorder {
   Timestamp last_stamp_;
   std::uint64_t refused_before_ = 0;
   std::atomic<bool> closed_{false};
-  std::counting_semaphore<> bell_{0};
-  RecorderInput from_io_{4096, bell_};            // full: bytes are missing from the recording
-  RecorderInput from_localization_{2048, bell_};  // full: lines and decisions are missing
-  RecorderInput from_awareness_{256, bell_};      // full: decisions are missing
-  RecorderInput from_map_{256, bell_};            // full: an operator's cells are missing
-  RecorderInput from_control_{16, bell_};         // full: whoever asked is told
+  RecorderInput from_io_{4096};            // full: bytes are missing from the recording
+  RecorderInput from_localization_{2048};  // full: lines and decisions are missing
+  RecorderInput from_awareness_{256};      // full: decisions are missing
+  RecorderInput from_map_{256};            // full: an operator's cells are missing
+  RecorderInput from_control_{16};         // full: whoever asked is told
 };
 
 }  // namespace deltamap::daemon

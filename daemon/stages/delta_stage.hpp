@@ -54,7 +54,7 @@ class DeltaStage {
   void offer_transients();
   void show_scans();
   void tell_of_gate();
-  void note(const Decision& decision) { (void)wiring_.recorder.send(note_of(decision)); }
+  void note(const Decision& decision) { (void)wiring_.recorder.try_send(note_of(decision)); }
 
   Wiring wiring_;
   mapping::StoreScan store_scan_;

@@ -70,7 +70,7 @@ struct IoStage::State {
 
   [[nodiscard]] drivers::port::RecordSink recorder() {
     return [this](drivers::port::ByteRecord&& record) {
-      if (!wiring.recorder.send(std::move(record))) wiring.telemetry.recording_lost.add(1);
+      if (!wiring.recorder.try_send(std::move(record))) wiring.telemetry.recording_lost.add(1);
     };
   }
 
@@ -127,7 +127,7 @@ struct IoStage::State {
   }
 
   void note(const Decision& decision) {
-    if (!wiring.recorder.send(note_of(decision))) wiring.telemetry.recording_lost.add(1);
+    if (!wiring.recorder.try_send(note_of(decision))) wiring.telemetry.recording_lost.add(1);
   }
 
   void watch_over_motion() {

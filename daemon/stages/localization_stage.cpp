@@ -42,7 +42,7 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
       memory_{settings.memory},
       is_kept_{!settings.map.store.empty()} {
   if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
-    (void)wiring_.recorder.send(refused_start_line());
+    (void)wiring_.recorder.try_send(refused_start_line());
   }
 }
 
@@ -87,7 +87,7 @@ void LocalizationStage::work_off(std::vector<SensorMessage>& batch) {
 void LocalizationStage::pass_over(const Scan& scan) {
   wiring_.telemetry.dropped.add(1);
   note({Kind::kScanDropped, scan.number, 0});
-  (void)wiring_.recorder.send(step_.pass_over(scan));
+  (void)wiring_.recorder.try_send(step_.pass_over(scan));
 }
 
 void LocalizationStage::localize(Scan scan) {
@@ -102,9 +102,9 @@ void LocalizationStage::localize(Scan scan) {
   show(tracked.estimate, tracked.scan.received);
   wiring_.show(tracked, step_.row(), wiring_.telemetry.latency_s.value(), step_.particles());
   tell_changes();
-  for (const LogLine& line : step_.lines()) (void)wiring_.recorder.send(LogLine{line});
-  (void)wiring_.recorder.send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
-  (void)wiring_.recorder.send(std::make_unique<const LocalizationRow>(step_.row()));
+  for (const LogLine& line : step_.lines()) (void)wiring_.recorder.try_send(LogLine{line});
+  (void)wiring_.recorder.try_send(TrajectoryPoint{tracked.scan.time, tracked.estimate.map_from_robot});
+  (void)wiring_.recorder.try_send(std::make_unique<const LocalizationRow>(step_.row()));
   map_ = tracked.estimate.map;
   keep_now_and_then(tracked.scan.time);
   if (!mapping_enabled_ || is_paused_ || wiring_.tracked_scans.try_send(std::move(tracked))) return;
@@ -219,7 +219,7 @@ void LocalizationStage::pause(const control::Command& command, const Scan& scan)
 void LocalizationStage::save(const control::Command& command) {
   if (!pose_kept_) {
     wiring_.answer({command.ticket, false, "no scan has been localized yet: nothing to save"});
-  } else if (!wiring_.recorder.send(
+  } else if (!wiring_.recorder.try_send(
                  std::make_unique<const SaveOrder>(SaveOrder{command.ticket, pose_to_keep(), map_}))) {
     wiring_.answer({command.ticket, false, "the disk is too slow: try again"});
   }
@@ -240,11 +240,11 @@ void LocalizationStage::show(const Estimate& estimate, Timestamp received) {
 void LocalizationStage::tell_changes() {
   const LocalizationRow& row = step_.row();
   if (row.state != told_state_) {
-    (void)wiring_.recorder.send(LogLine{state_line(row)});
+    (void)wiring_.recorder.try_send(LogLine{state_line(row)});
     told_state_ = row.state;
   }
   if (row.belief.verdict != told_verdict_) {
-    (void)wiring_.recorder.send(LogLine{verdict_line(row)});
+    (void)wiring_.recorder.try_send(LogLine{verdict_line(row)});
     told_verdict_ = row.belief.verdict;
   }
 }
@@ -265,12 +265,12 @@ void LocalizationStage::keep_now_and_then(Timestamp time) {
 }
 
 void LocalizationStage::keep_pose() {
-  if (is_kept_ && has_tracked_) (void)wiring_.recorder.send(std::make_unique<const KeptPose>(pose_to_keep()));
+  if (is_kept_ && has_tracked_) (void)wiring_.recorder.try_send(std::make_unique<const KeptPose>(pose_to_keep()));
 }
 
 void LocalizationStage::keep_stability() {
   if (!is_kept_) return;
-  (void)wiring_.recorder.send(std::make_unique<const KeptStability>(
+  (void)wiring_.recorder.try_send(std::make_unique<const KeptStability>(
       KeptStability{.first_map = first_map_, .revision = step_.row().revision, .record = step_.stability()}));
 }
 

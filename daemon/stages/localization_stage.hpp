@@ -73,7 +73,7 @@ class LocalizationStage {
   void keep_pose();
   void keep_stability();
   [[nodiscard]] KeptPose pose_to_keep() const;
-  void note(const Decision& decision) { (void)wiring_.recorder.send(note_of(decision)); }
+  void note(const Decision& decision) { (void)wiring_.recorder.try_send(note_of(decision)); }
 
   Wiring wiring_;
   LocalizationStep step_;

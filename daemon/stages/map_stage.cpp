@@ -120,7 +120,7 @@ void MapStage::obey(const MapOrder& order) {
 }
 
 void MapStage::note(const SetCells& set) {
-  for (std::string& part : notes_of(set)) (void)wiring_.recorder.send(std::move(part));
+  for (std::string& part : notes_of(set)) (void)wiring_.recorder.try_send(std::move(part));
 }
 
 void MapStage::hand_on(const MapStep::Result& result) {
