@@ -10,9 +10,9 @@ namespace {
 constexpr double kPeriod_s = 0.2;
 
 /// What is said while a share of the scans contradicts the wheels.
-class Watched {
+class WatchedWheels {
  public:
-  explicit Watched(bool moves) : moves_{moves} {}
+  explicit WatchedWheels(bool moves) : moves_{moves} {}
 
   std::string after(double duration_s, double share, double stood_m = 0.0) {
     std::string said;
@@ -41,7 +41,7 @@ class Watched {
 };
 
 TEST(WheelWatch, WheelsThatContradictAThirdOfTheScansAreToldOnceAfterAMinute) {
-  Watched watched{true};
+  WatchedWheels watched{true};
   EXPECT_EQ(watched.after(59.0, 0.35), "");
   EXPECT_FALSE(watched.contradict());
   const std::string said = watched.after(300.0, 0.35);
@@ -54,19 +54,19 @@ TEST(WheelWatch, WheelsThatContradictAThirdOfTheScansAreToldOnceAfterAMinute) {
 }
 
 TEST(WheelWatch, APoseThatNeverChangesIsToldByFewerScans) {
-  Watched watched{false};
+  WatchedWheels watched{false};
   const std::string said = watched.after(30.0, 0.2);
   EXPECT_EQ(said.find("warning: the robot's pose has never changed, and in 20 of the last "), 0u) << said;
   EXPECT_TRUE(watched.contradict());
 }
 
 TEST(WheelWatch, SlipsAndSpinsAreNoFaultOfTheSettings) {
-  Watched watched{true};
+  WatchedWheels watched{true};
   EXPECT_EQ(watched.after(600.0, 0.1), "");
   EXPECT_EQ(watched.after(10.0, 1.0), "") << "carried";
   EXPECT_EQ(watched.after(200.0, 0.02), "");
   EXPECT_EQ(watched.after(100.0, 1.0, 0.5), "") << "it spins";
-  EXPECT_EQ(Watched{false}.after(600.0, 0.05), "") << "it stands, and people pass";
+  EXPECT_EQ(WatchedWheels{false}.after(600.0, 0.05), "") << "it stands, and people pass";
 }
 
 }  // namespace
