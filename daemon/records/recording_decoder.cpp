@@ -14,8 +14,9 @@ RecordingDecoder::RecordingDecoder(const Settings& settings)
 
 void RecordingDecoder::feed(const drivers::port::ByteRecord& record, const Sinks& sinks) {
   const bool is_robot = record.port == PortId::kRobot;
-  if (const auto baud = drivers::port::baud_of_note(record.note)) {
-    is_robot ? robot_.on_baud(*baud) : laser_.on_baud(*baud);
+  if (unsigned& baud = is_robot ? robot_baud_ : laser_baud_; record.baud != 0 && record.baud != baud) {
+    baud = record.baud;
+    is_robot ? robot_.on_baud(baud) : laser_.on_baud(baud);
   }
   if (record.note == session_note(record.port)) {
     is_robot ? (void)robot_.start(record.stamp) : (void)laser_.start(record.stamp);

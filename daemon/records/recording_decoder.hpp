@@ -34,6 +34,8 @@ class RecordingDecoder {
  private:
   drivers::pioneer::PioneerSession robot_;
   drivers::lms200::Lms200Session laser_;
+  unsigned robot_baud_ = 0;  // line speed of the newest record: what a byte's time is reckoned by
+  unsigned laser_baud_ = 0;
   std::uint32_t next_odometry_ = 0;
   std::uint32_t next_scan_ = 0;
 };

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "daemon/records/recording_decoder.hpp"
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/measurement.hpp"
 #include "drivers/lms200/status.hpp"
@@ -133,6 +134,26 @@ TEST(ImportCarmen, GivesBackTimesRangesAndRobotPosesOfTheLog) {
   EXPECT_NEAR(all.odometry[1].odom_from_robot.x - all.odometry[0].odom_from_robot.x, 0.2 - 0.1234, 2 * kHalfMillimetre);
   EXPECT_NEAR(all.odometry[1].odom_from_robot.y - all.odometry[0].odom_from_robot.y, -0.1, 2 * kHalfMillimetre);
   EXPECT_TRUE(all.odometry[0].motors_enabled);
+}
+
+/// As every replay reads it: neither session is told a baud but by the recording.
+TEST(ImportCarmen, IsReplayedWithPosesAtTheTimesOfTheirScans) {
+  const test::TemporaryFolder folder;
+  std::string log;
+  for (int i = 0; i < 5; ++i)
+    log += fan(180, "1.07", "2.50", "0." + std::to_string(i) + " 0 0", "976055546." + std::to_string(i) + "74470");
+  (void)imported(folder, log);
+  drivers::port::ByteLogReader reader{folder.path() / "a.pcapng"};
+  daemon::RecordingDecoder decoder{daemon::Settings{}};
+  std::vector<Timestamp> poses;
+  std::vector<Timestamp> scans;
+  const daemon::RecordingDecoder::Sinks sinks{
+      [&](Odometry&& odometry, std::uint32_t) { poses.push_back(odometry.time); },
+      [&](Scan&& scan) { scans.push_back(scan.time); }};
+  while (const auto record = reader.next()) decoder.feed(*record, sinks);
+  ASSERT_EQ(scans.size(), 5u);
+  ASSERT_EQ(poses.size(), 5u);
+  for (std::size_t i = 0; i < scans.size(); ++i) EXPECT_NEAR(seconds(poses[i] - scans[i]), 0.0, kTimeToleranceS) << i;
 }
 
 TEST(ImportCarmen, BeginsWithTheRepliesOfALiveStart) {
