@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/statistics/certainty.hpp"
 #include "daemon/settings/settings.hpp"
-#include "experiments/certainty.hpp"
 #include "experiments/scan_table.hpp"
 #include "localization/localizer_params.hpp"
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of a drive, a row for every scan; and the statistics that are made of them.
+// Numbers of a drive, a row for every scan.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/statistics/summary.hpp"
 
 namespace deltamap::experiments {
 
@@ -28,17 +30,6 @@ class ScanTable {
 
 /// Shortest text that tells the number to six digits; empty for NaN.
 [[nodiscard]] std::string text_of(double number);
-
-// NaN where there are no values.
-[[nodiscard]] double mean_of(const std::vector<double>& values);
-[[nodiscard]] double root_mean_square(const std::vector<double>& values);
-/// The smallest value that at least this share of all does not exceed.
-[[nodiscard]] double quantile(std::vector<double> values, double share);
-/// Share of the values above a limit.
-[[nodiscard]] double share_above(const std::vector<double>& values, double limit);
-
-/// The most that the true share may be where `hits` of `all` were seen: upper end of Wilson's interval of 95 %.
-[[nodiscard]] double wilson_upper(double hits, double all);
 
 void append(std::vector<double>& values, const std::vector<double>& more);
 

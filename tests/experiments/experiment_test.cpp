@@ -208,13 +208,6 @@ TEST(Target, IsMetOnlyByAMeasuredFigureWithinItsLimits) {
   EXPECT_FALSE(target.is_met_by(std::nan("")));
 }
 
-TEST(ScanTable, AnswersItsStatistics) {
-  EXPECT_DOUBLE_EQ(experiments::root_mean_square({3.0, -4.0, 0.0, 0.0}), 2.5);
-  EXPECT_DOUBLE_EQ(experiments::quantile({5.0, 1.0, 4.0, 2.0, 3.0}, 0.8), 4.0);
-  EXPECT_DOUBLE_EQ(experiments::share_above({0.1, 0.6, 0.5, 0.7}, 0.5), 0.5);
-  EXPECT_TRUE(std::isnan(experiments::mean_of({})));
-}
-
 TEST(Chart, MakesTextHarmless) {
   const std::string html = experiments::figure_of({"t", "a < b", "y", {{"\"one\"", {{0.0, 1.0}, {1.0, 2.0}}}}});
   EXPECT_EQ(html.find("a < b"), std::string::npos);
@@ -258,21 +251,6 @@ TEST(Chart, NumbersHaveThreeDigits) {
   EXPECT_EQ(experiments::shortened("version 1.2.3, 4 of 5."), "version 1.2.3, 4 of 5.");
 }
 
-TEST(Certainty, HoldsTheMeanOfRunsThatScatter) {
-  std::vector<double> values;
-  for (int i = 0; i < 40; ++i) values.push_back(i % 2 == 0 ? 1.0 : 3.0);
-  values.push_back(std::nan(""));
-  const experiments::Certainty mean = experiments::certainty_of_mean(values);
-  EXPECT_EQ(mean.runs, 40u);
-  EXPECT_NEAR(mean.low, 2.0 - 1.96 / std::sqrt(40.0), 0.1) << "as the normal distribution has it";
-  EXPECT_NEAR(mean.high, 2.0 + 1.96 / std::sqrt(40.0), 0.1);
-  const experiments::Certainty again = experiments::certainty_of_mean(values);
-  EXPECT_EQ(mean.low, again.low) << "the same runs, the same interval";
-  EXPECT_FALSE(experiments::certainty_of_mean({1.0, 2.0, 3.0, 4.0}).has_interval()) << "too few";
-  EXPECT_FALSE(experiments::certainty_of_extreme(values).has_interval());
-  EXPECT_EQ(experiments::certainty_of_extreme(values).runs, 40u);
-}
-
 /// A run whose scans have these values in one column.
 experiments::Outcome run_of(const std::string& place, std::initializer_list<double> values) {
   experiments::Outcome run{{{"place", place}}, {}, experiments::ScanTable{{"error_m"}}};
@@ -282,7 +260,7 @@ experiments::Outcome run_of(const std::string& place, std::initializer_list<doub
 
 experiments::PooledRuns::Numbers mean_and_p90(const experiments::ScanTable& scans) {
   const std::vector<double> error_m = scans.column("error_m");
-  return {{"mean_m", experiments::mean_of(error_m)}, {"p90_m", experiments::quantile(error_m, 0.9)}};
+  return {{"mean_m", mean_of(error_m)}, {"p90_m", quantile(error_m, 0.9)}};
 }
 
 TEST(PooledRuns, DrawWholeRunsAgain) {
@@ -311,8 +289,8 @@ TEST(PooledRuns, FewRunsAreCountedAndHaveNoInterval) {
 
 TEST(Experiment, PageTellsIntervalAndRunsBesideAFigure) {
   experiments::Results results{"name", "what", 1, false, {}, {}, {}, {}};
-  results.report.figures = {{"error, mean", 0.0312345, "m", {}, "", experiments::Certainty{36, 0.02, 0.04}},
-                            {"worst", 0.5, "m", {}, "", experiments::Certainty{.runs = 36}}};
+  results.report.figures = {{"error, mean", 0.0312345, "m", {}, "", Certainty{36, 0.02, 0.04}},
+                            {"worst", 0.5, "m", {}, "", Certainty{.runs = 36}}};
   const std::string page = experiments::page_html(results);
   EXPECT_NE(page.find("0.0312 m</td><td class=\"number\">0.02 … 0.04</td><td>36</td>"), std::string::npos) << page;
   const auto summary = nlohmann::json::parse(experiments::summary_json(results));

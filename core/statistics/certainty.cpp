@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "experiments/certainty.hpp"
+#include "core/statistics/certainty.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "core/random.hpp"
-#include "experiments/scan_table.hpp"
+#include "core/statistics/summary.hpp"
 
-namespace deltamap::experiments {
+namespace deltamap {
 namespace {
 
 constexpr std::size_t kLeastRuns = 5;
@@ -85,4 +85,4 @@ Certainty certainty_of_root_mean_square(const std::vector<double>& values) {
 
 Certainty certainty_of_extreme(const std::vector<double>& values) { return {.runs = known(values).size()}; }
 
-}  // namespace deltamap::experiments
+}  // namespace deltamap

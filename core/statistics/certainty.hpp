@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace deltamap::experiments {
+namespace deltamap {
 
 struct Certainty {
   std::size_t runs = 0;
@@ -30,4 +30,4 @@ using FiguresOfRuns = std::function<std::vector<double>(const std::vector<std::s
 /// Of the least or the most of all, and of a count: resampling says nothing of what lies beyond.
 [[nodiscard]] Certainty certainty_of_extreme(const std::vector<double>& values);
 
-}  // namespace deltamap::experiments
+}  // namespace deltamap
