@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A progress bar on standard error: on a terminal only, nothing in a pipe.
+// A progress bar on standard error, with the time that is left where that is long: on a terminal only, nothing in a
+// pipe.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
 namespace deltamap::tool {
+
+/// "40 s left", "3 min left", "2.1 h left" after `passed_s` seconds for a share in (0, 1]; empty where less than five
+/// seconds are, or too little is done to say.
+[[nodiscard]] std::string time_left(double passed_s, double share);
 
 class Progress {
  public:
@@ -23,6 +29,7 @@ class Progress {
   std::string what_;
   std::uint64_t total_;
   int shown_percent_ = -1;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   bool on_terminal_;
 };
 

@@ -34,6 +34,7 @@ int run_tool(int argc, const char* const* argv) {
   add_export(app);
   add_info(app);
   add_replay(app);
+  add_sweep(app);
   add_view(app);
   return answer_of(app, argc, argv);
 }

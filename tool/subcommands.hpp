@@ -23,6 +23,7 @@ void add_calibrate_motion(CLI::App& calibrate);
 void add_import_carmen(CLI::App& import);
 
 void add_replay(CLI::App& app);
+void add_sweep(CLI::App& app);
 void add_view(CLI::App& app);
 
 // under `deltamap score`

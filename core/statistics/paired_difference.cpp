@@ -119,10 +119,9 @@ PairedDifference paired_difference(const std::vector<std::vector<double>>& diffe
   } else {
     return answer;
   }
-  const double reach =
-      scatter.variance > 0.0
-          ? student_quantile(0.5 + 0.5 * confidence, scatter.freedom) * std::sqrt(scatter.variance)
-          : 0.0;
+  const double reach = scatter.variance > 0.0
+                           ? student_quantile(0.5 + 0.5 * confidence, scatter.freedom) * std::sqrt(scatter.variance)
+                           : 0.0;
   answer.low = answer.mean - reach;
   answer.high = answer.mean + reach;
   return answer;

@@ -55,12 +55,21 @@ RecordedRun recorded_run(const ReplayJob& job) {
   return recorded;
 }
 
+FirstMap first_map(std::shared_ptr<const OccupancyGrid> grid) {
+  const std::uint64_t hash = grid_hash(*grid);
+  return {std::move(grid), hash};
+}
+
 ReplayStart replay_start(const RecordedRun& recorded, const ReplayJob& job,
                          std::shared_ptr<const OccupancyGrid> given) {
-  RunIdentity identity{settings_fingerprint(job.settings), grid_hash(*given)};
+  return replay_start(recorded, job, first_map(std::move(given)));
+}
+
+ReplayStart replay_start(const RecordedRun& recorded, const ReplayJob& job, FirstMap given) {
+  RunIdentity identity{settings_fingerprint(job.settings), given.hash};
   const auto& run = recorded.journal.run();
   const auto& begin = recorded.begin.begin();
-  ReplayStart answer{{std::move(given), 0}, "the map alone", {}};
+  ReplayStart answer{{std::move(given.grid), 0}, "the map alone", {}};
   if (begin && run && (identity.map == begin->first_map || identity.map == run->map)) {
     const auto map = begin->start.map ? begin->start.map : answer.start.map;
     answer.start = begin->start;
@@ -78,6 +87,12 @@ ReplayStart replay_start(const RecordedRun& recorded, const ReplayJob& job,
   }
   answer.journal = journal_state(recorded, job, identity);
   return answer;
+}
+
+std::string why_no_scan(const drivers::port::LogFaults& faults, const std::filesystem::path& recording) {
+  if (faults.cut) return faults.cut->text + "; no scan lies before that";
+  return faults.lacks_records ? faults.doubts.front() + "; no scan is left"
+                              : recording.string() + ": holds no scan in this window";
 }
 
 }  // namespace deltamap::daemon

@@ -21,11 +21,18 @@
 
 namespace deltamap::daemon {
 
+/// What a run does beside its results, for those who look at it.
+struct RunDuties {
+  std::optional<KnownMount> known_mount{};  ///< nothing: the scans are watched for it
+  bool tells_times = true;                  ///< cpu() is measured: a twentieth of the run's time
+};
+
 class SequentialRun {
  public:
   /// The journal says before which scan the localizer takes what; null: a revision when `map_delay_s` of the run have
   /// passed since its set ended, all else before the next scan.
-  SequentialRun(const Settings& settings, const StartMap& start, const Journal* journal, double map_delay_s);
+  SequentialRun(const Settings& settings, const StartMap& start, const Journal* journal, double map_delay_s,
+                const RunDuties& duties = {});
 
   void observe(const Odometry& odometry);
   /// The localizer takes what is due before this scan.
@@ -41,7 +48,7 @@ class SequentialRun {
   [[nodiscard]] const LocalizationStep& localization() const { return localization_; }
   [[nodiscard]] const mapping::StoreScan& store_scan() const { return store_scan_; }
   [[nodiscard]] const MapStep& map() const { return map_; }
-  /// CPU time of this thread so far, by stage.
+  /// CPU time of this thread so far, by stage; 0 where the duties leave it out.
   [[nodiscard]] const StageCpu& cpu() const { return cpu_; }
 
  private:
@@ -53,6 +60,7 @@ class SequentialRun {
   MapStep map_;
   RevisionQueue revisions_;
   TransientsQueue transients_;
+  bool tells_times_;
   StageCpu cpu_;
 };
 

@@ -10,8 +10,8 @@
 
 namespace deltamap::daemon {
 
-[[nodiscard]] constexpr std::uint64_t fingerprint_of(std::string_view text) {
-  std::uint64_t hash = 0xCBF29CE484222325u;
+/// `hash`: of what stands before it, for a text that comes in pieces.
+[[nodiscard]] constexpr std::uint64_t fingerprint_of(std::string_view text, std::uint64_t hash = 0xCBF29CE484222325u) {
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
   return hash;
 }

@@ -60,12 +60,14 @@ std::string shift_from_given_pose(const Pose2& first_estimate, const Settings& s
   return text;
 }
 
-LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
+LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start,
+                                   std::optional<KnownMount> known_mount)
     : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
       fit_watch_{settings.initial_pose.has_value()},
-      mount_watch_{settings.localizer.odometry, settings.laser.session.is_upside_down},
+      known_mount_{known_mount},
       ratio_{settings.mapping.divergence},
       last_map_from_robot_{settings.initial_pose.value_or(start.remembered.value_or(Pose2{}))} {
+  if (!known_mount_) mount_watch_.emplace(settings.localizer.odometry, settings.laser.session.is_upside_down);
   if (start.revision > 0)
     apply({.number = start.revision, .time = {}, .map = start.map, .changes = {}, .field_patch = {}});
   if (start.calibration) localizer_.restore(*start.calibration);
@@ -75,23 +77,24 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
 
 void LocalizationStep::observe(const Odometry& odometry) {
   localizer_.observe(odometry);
-  mount_watch_.observe(odometry);
+  if (mount_watch_) mount_watch_->observe(odometry);
   wheel_watch_.observe(odometry);
 }
 
-SensorDoubt LocalizationStep::sensor_doubt() const {
-  if (mount_watch_.is_told()) return SensorDoubt::kMount;
+SensorDoubt LocalizationStep::sensor_doubt(Timestamp now) const {
+  const bool is_told = mount_watch_ ? mount_watch_->is_told() : known_mount_->told_at && *known_mount_->told_at <= now;
+  if (is_told) return SensorDoubt::kMount;
   if (fit_watch_.is_scale_told()) return SensorDoubt::kScale;
   return wheel_watch_.contradict() ? SensorDoubt::kWheels : SensorDoubt::kNone;
 }
 
 TrackedScan LocalizationStep::observe(Scan scan) {
   lines_.clear();
-  tell(mount_watch_.observe(scan));
+  if (mount_watch_) tell(mount_watch_->observe(scan));
   TrackedScan tracked = localizer_.observe(std::move(scan));
   tell(fit_watch_.observe(tracked, {fit(), localizer_.fit_of_all(), localizer_.range_scale()}));
   tell(wheel_watch_.observe(tracked, localizer_.counts().wheels_contradicted));
-  tracked.sensor_doubt = sensor_doubt();
+  tracked.sensor_doubt = sensor_doubt(tracked.scan.time);
   tell_of_ground(tracked.estimate.belief.is_on_new_ground);
   learn_or_forget(tracked);
   last_map_from_robot_ = tracked.estimate.map_from_robot;

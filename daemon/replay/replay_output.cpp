@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/replay/replay_output.hpp"
+
+#include "core/files/grid_file.hpp"
+#include "daemon/maps/revision_keeper.hpp"
+
+namespace deltamap::daemon {
+
+FolderOutput::FolderOutput(const std::filesystem::path& folder, const OccupancyGrid& first,
+                           std::uint32_t first_revision)
+    : folder_{folder},
+      first_revision_{first_revision},
+      store_{folder / "map_store.sqlite", first},
+      trajectory_{folder / "trajectory.tum"},
+      localization_log_{folder / "localization.csv"},
+      changes_{folder / "changes.jsonl"} {
+  localization_log_.write(csv_header());
+}
+
+void FolderOutput::localized(const LocalizationRow& row) {
+  trajectory_.write(tum_line({row.time, row.map_from_robot}));
+  localization_log_.write(csv_line(row));
+}
+
+void FolderOutput::passed_over(const TrajectoryPoint& point) { trajectory_.write(tum_line(point)); }
+
+void FolderOutput::changed(const MapStep::Result& result, std::string_view method) {
+  changes_.write(json_line(result.note));
+  keep(store_, result, method, first_revision_);
+}
+
+void FolderOutput::settled() { store_.set_provisional({}); }
+
+void FolderOutput::finish(const OccupancyGrid& newest) {
+  trajectory_.flush();
+  localization_log_.flush();
+  changes_.flush();
+  write_grid(newest, folder_ / "map.yaml");
+}
+
+}  // namespace deltamap::daemon
