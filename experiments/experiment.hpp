@@ -16,6 +16,7 @@
 #include "daemon/settings/settings.hpp"
 #include "experiments/scan_table.hpp"
 #include "localization/localizer_params.hpp"
+#include "reports/chart.hpp"
 
 namespace deltamap::experiments {
 
@@ -72,18 +73,8 @@ struct Figure {
   std::optional<Certainty> certainty{};  ///< of a figure that is made of runs
 };
 
-struct Series {
-  std::string name;
-  std::vector<std::pair<double, double>> points;
-};
-
-struct Chart {
-  std::string title;
-  std::string x;
-  std::string y;
-  std::vector<Series> series{};
-  bool with_diagonal = false;  ///< y = x, for reliability
-};
+using reports::Chart;
+using reports::Series;
 
 struct TextTable {
   std::string title;

@@ -9,8 +9,7 @@ std::vector<Outcome> outcomes_of(const std::vector<Run>& runs, int jobs, const s
   std::vector<Outcome> outcomes(runs.size());
   std::size_t finished = 0;
   work_through(
-      runs.size(), jobs, [&](std::size_t i) { outcomes[i] = runs[i].work(); },
-      [&](std::size_t) { done(++finished); });
+      runs.size(), jobs, [&](std::size_t i) { outcomes[i] = runs[i].work(); }, [&](std::size_t) { done(++finished); });
   return outcomes;
 }
 

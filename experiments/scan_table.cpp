@@ -2,10 +2,7 @@
 #include "experiments/scan_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
-#include <cstdio>
 
 namespace deltamap::experiments {
 
@@ -26,13 +23,6 @@ std::vector<double> ScanTable::column(std::string_view name) const {
   std::vector<double> values(rows());
   for (std::size_t row = 0; row < values.size(); ++row) values[row] = at(row, index);
   return values;
-}
-
-std::string text_of(double number) {
-  if (std::isnan(number)) return "";
-  std::array<char, 32> text{};
-  (void)std::snprintf(text.data(), text.size(), "%.6g", number);
-  return text.data();
 }
 
 void append(std::vector<double>& values, const std::vector<double>& more) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/statistics/summary.hpp"
+#include "reports/number_text.hpp"
 
 namespace deltamap::experiments {
 
@@ -28,8 +29,7 @@ class ScanTable {
   std::vector<double> values_;
 };
 
-/// Shortest text that tells the number to six digits; empty for NaN.
-[[nodiscard]] std::string text_of(double number);
+using reports::text_of;
 
 void append(std::vector<double>& values, const std::vector<double>& more);
 

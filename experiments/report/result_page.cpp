@@ -2,31 +2,21 @@
 // The page of an experiment's results: everything in one file.
 #include <algorithm>
 #include <cmath>
-#include <span>
-#include <string_view>
 #include <vector>
 
-#include "daemon/dashboard/page_files.hpp"
-#include "daemon/telemetry/version.hpp"
-#include "experiments/report/report_files.hpp"
 #include "experiments/report/result_files.hpp"
-#include "experiments/report/svg_chart.hpp"
+#include "reports/number_text.hpp"
+#include "reports/page_parts.hpp"
+#include "reports/svg_chart.hpp"
 
 namespace deltamap::experiments {
 namespace {
 
-std::string cell(const std::string& text, const char* kind = "td", const char* style = nullptr) {
-  const std::string open = style == nullptr ? std::string{kind} : std::string{kind} + " class=\"" + style + "\"";
-  return "<" + open + ">" + escaped(text) + "</" + kind + ">";
-}
-
-/// A table that scrolls by itself where the screen is too narrow; `rows` are HTML.
-std::string table_of(const std::string& name, const std::vector<std::string>& columns, const std::string& rows) {
-  std::string html =
-      "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" + escaped(name) + "\"><table><thead><tr>";
-  for (const std::string& column : columns) html += cell(column, "th");
-  return html + "</tr></thead>\n<tbody>" + rows + "</tbody></table></div>\n";
-}
+using reports::cell;
+using reports::escaped;
+using reports::short_text;
+using reports::shortened;
+using reports::table_of;
 
 std::string text_of_target(const Target& target) {
   std::string text;
@@ -82,46 +72,18 @@ std::string named(const Picture& picture) {
   return svg;
 }
 
-std::string file_of(std::span<const daemon::dashboard::PageFile> files, std::string_view name) {
-  const auto file = std::find_if(files.begin(), files.end(), [&](const auto& one) { return one.name == name; });
-  return std::string{file == files.end() ? std::string_view{} : file->content};
-}
-
-std::string head_html(const std::string& title) {
-  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-         "<meta name=\"color-scheme\" content=\"light dark\"><link rel=\"icon\" href=\"data:,\">\n<title>" +
-         escaped(title) + "</title>\n<style>\n" + file_of(daemon::dashboard::page_files(), "theme.css") +
-         file_of(page_files(), "report.css") + "</style>\n<script>\n" + file_of(page_files(), "report.js") +
-         "</script></head>\n";
-}
-
-/// "deltamap 0.1.0, commit fc42533; settings as delivered, but seed: 2"
-std::string provenance_text(const daemon::Settings& settings) {
-  std::string text = "deltamap " + std::string(daemon::version()) + ", commit " + std::string(daemon::commit()) +
-                     "; settings as delivered";
-  const char* before = ", but ";
-  for (const auto& [key, value] : daemon::changed_settings(settings)) {
-    text += before + key + ": " + value;
-    before = ", ";
-  }
-  return text + ".";
-}
-
 }  // namespace
 
 std::string page_html(const Results& results) {
   const Report& report = results.report;
-  std::string html = head_html(results.name);
-  html += "<body>\n<header><h1>" + escaped(results.name) +
-          "</h1><button id=\"theme\" type=\"button\" aria-label=\"Dark or light\">◐</button></header>\n<main>\n";
+  std::string html = reports::page_begin(results.name);
   html += "<p>" + escaped(results.what) + ". " + std::to_string(results.runs.size()) +
           (results.runs.size() == 1 ? " run from seed " : " runs from seed ") + std::to_string(results.seed) +
           (results.quick ? ", quick" : "") + ".</p>\n";
-  html += "<p class=\"from\">" + escaped(provenance_text(results.settings)) + "</p>\n";
+  html += "<p class=\"from\">" + escaped(reports::provenance_text(results.settings)) + "</p>\n";
   html += "<h2>Figures</h2>\n" + figures_html(report);
   if (!report.charts.empty()) html += "<h2>Charts</h2>\n<div class=\"charts\">\n";
-  for (const Chart& chart : report.charts) html += figure_of(chart);
+  for (const Chart& chart : report.charts) html += reports::figure_of(chart);
   if (!report.charts.empty()) html += "</div>\n";
   for (const TextTable& table : report.tables) html += table_html(table);
   if (!report.pictures.empty()) html += "<h2>Pictures</h2>\n<div class=\"charts\">\n";
@@ -130,7 +92,7 @@ std::string page_html(const Results& results) {
             "</figure>\n";
   }
   if (!report.pictures.empty()) html += "</div>\n";
-  return html + "</main></body></html>\n";
+  return html + reports::page_end();
 }
 
 }  // namespace deltamap::experiments

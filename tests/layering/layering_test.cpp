@@ -31,8 +31,11 @@ const std::map<std::string, std::set<std::string>> kArrows = {
     {"navigation", {"core"}},
     {"simulation", {"core", "drivers/pioneer", "drivers/lms200"}},
     {"daemon", {"core", "drivers", "localization", "mapping", "surveying", "navigation"}},
-    {"experiments", {"core", "drivers", "localization", "mapping", "surveying", "navigation", "daemon", "simulation"}},
-    {"tool", {"core", "drivers", "localization", "mapping", "surveying", "navigation", "daemon", "simulation"}},
+    {"reports", {"core", "daemon"}},
+    {"experiments",
+     {"core", "drivers", "localization", "mapping", "surveying", "navigation", "daemon", "simulation", "reports"}},
+    {"tool",
+     {"core", "drivers", "localization", "mapping", "surveying", "navigation", "daemon", "simulation", "reports"}},
     {"tool/lab", {"daemon", "experiments", "tool"}},
 };
 
@@ -73,8 +76,9 @@ std::vector<fs::path> sources_of(const std::string& folder) {
   return files;
 }
 
-const std::vector<std::string> kWings = {"core",       "drivers",    "localization", "mapping",     "surveying",
-                                         "navigation", "simulation", "daemon",       "experiments", "tool"};
+const std::vector<std::string> kWings = {"core",      "drivers",     "localization", "mapping",
+                                         "surveying", "navigation",  "simulation",   "daemon",
+                                         "reports",   "experiments", "tool"};
 
 struct Include {
   std::string from;
@@ -246,6 +250,8 @@ TEST(Layering, RefusesArrowsThatAreNotDrawn) {
   EXPECT_FALSE(is_allowed("experiments/registry.cpp", "tool/run_tool.hpp"));
   EXPECT_FALSE(is_allowed("drivers/pioneer/session.cpp", "drivers/port/serial_port.hpp"));
   EXPECT_FALSE(is_allowed("simulation/devices/virtual_pioneer.cpp", "drivers/port/serial_port.hpp"));
+  EXPECT_FALSE(is_allowed("daemon/pipeline.cpp", "reports/svg_chart.hpp"));
+  EXPECT_TRUE(is_allowed("tool/tune/sweep.cpp", "reports/svg_chart.hpp"));
   EXPECT_TRUE(is_allowed("tool/sim.cpp", "simulation/world/world.hpp"));
   EXPECT_FALSE(is_allowed("tool/replay.cpp", "experiments/registry.hpp"));
   EXPECT_FALSE(is_allowed("tool/replay.cpp", "tool/lab/run_lab.hpp"));

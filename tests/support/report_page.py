@@ -4,8 +4,8 @@ import html
 
 from project import ROOT
 
-LOOK = ["daemon/dashboard/page/theme.css", "experiments/report/page/report.css"]
-BEHAVIOUR = "experiments/report/page/report.js"
+LOOK = ["daemon/dashboard/page/theme.css", "reports/page/report.css"]
+BEHAVIOUR = "reports/page/report.js"
 
 
 def cell(text, kind="td", style=""):

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "experiments/experiment.hpp"
+#include "reports/chart.hpp"
 
-namespace deltamap::experiments {
+namespace deltamap::reports {
 
 /// A <figure> of class "chart": caption, keys of the lines, and the lines; page/report.js tells the values under the
 /// pointer.
@@ -20,12 +20,7 @@ struct Axis {
 };
 [[nodiscard]] Axis axis_for(double low, double high);
 
-/// Three digits: what a reader takes in. Whole numbers are whole; "–" where there is nothing.
-[[nodiscard]] std::string short_text(double number);
-/// A text whose numbers with a decimal point have three digits.
-[[nodiscard]] std::string shortened(const std::string& text);
-
 /// Text with <, >, & and " made harmless.
 [[nodiscard]] std::string escaped(const std::string& text);
 
-}  // namespace deltamap::experiments
+}  // namespace deltamap::reports

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "experiments/report/svg_chart.hpp"
+#include "reports/svg_chart.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <vector>
 
-namespace deltamap::experiments {
+#include "reports/number_text.hpp"
+
+namespace deltamap::reports {
 namespace {
 
 constexpr double kWidth = 480.0;  // as wide as a column: the text stays readable on a phone
@@ -126,8 +125,6 @@ Frame frame_of(const Chart& chart) {
   return {x.ending_axis(), y.axis()};
 }
 
-bool is_part_of_number(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.'; }
-
 }  // namespace
 
 Axis axis_for(double low, double high) {
@@ -145,35 +142,6 @@ Axis axis_for(double low, double high) {
   const double share = rough / power;
   const double step = power * (share < 1.5 ? 1.0 : share < 3.0 ? 2.0 : share < 7.0 ? 5.0 : 10.0);
   return {std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step, step};
-}
-
-std::string short_text(double value) {
-  if (!std::isfinite(value)) return "–";
-  char text[32];
-  const bool is_whole = value == std::round(value) && std::abs(value) < 1e15;
-  (void)std::snprintf(text, sizeof text, is_whole || std::abs(value) >= 100.0 ? "%.0f" : "%.3g", value);
-  return text;
-}
-
-std::string shortened(const std::string& text) {
-  std::string answer;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t end = at;
-    while (end < text.size() && is_part_of_number(text[end])) ++end;
-    const std::string token = text.substr(at, end - at);
-    const bool is_decimal = std::count(token.begin(), token.end(), '.') == 1 && token.size() > 2 &&
-                            token.front() != '.' && token.back() != '.';
-    if (end == at) {
-      answer += text[at++];
-      continue;
-    }
-    char* rest = nullptr;
-    const double value = std::strtod(text.c_str() + at, &rest);
-    const auto read = static_cast<std::size_t>(rest - text.c_str()) - at;  // with an exponent
-    answer += is_decimal ? short_text(value) : token;
-    at += is_decimal ? read : token.size();
-  }
-  return answer;
 }
 
 std::string escaped(const std::string& text) {
@@ -216,4 +184,4 @@ std::string figure_of(const Chart& chart) {
   return html + "</svg></figure>\n";
 }
 
-}  // namespace deltamap::experiments
+}  // namespace deltamap::reports

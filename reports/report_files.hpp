@@ -7,8 +7,8 @@
 
 #include "daemon/dashboard/page_files.hpp"
 
-namespace deltamap::experiments {
+namespace deltamap::reports {
 
 [[nodiscard]] std::span<const daemon::dashboard::PageFile> page_files();
 
-}  // namespace deltamap::experiments
+}  // namespace deltamap::reports
