@@ -44,8 +44,8 @@ bool FileMessages::read_on() {
 
 OutsideWindow FileMessages::outside_window() {
   return {.packets_before = port_.packets_before(),
-          .packets_after = port_.count_packets_after(),
-          .scans_before = scans_before_};
+          .scans_before = scans_before_,
+          .packets_after = port_.count_packets_after()};
 }
 
 double FileMessages::done() const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `deltamap score`: holds what the daemon made of a simulation against its truth. `score relations`:
-// score_relations.cpp.
+// `deltamap score`: what a run is worth (score_runs), or what the daemon made of a simulation, changes of the map
+// included. `score relations`: score_relations.cpp.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iomanip>
@@ -15,6 +15,7 @@
 #include "simulation/score/change_score.hpp"
 #include "simulation/score/trajectory_score.hpp"
 #include "tool/scenario_place.hpp"
+#include "tool/score/score_runs.hpp"
 #include "tool/subcommands.hpp"
 #include "tool/told_grid.hpp"
 
@@ -25,6 +26,7 @@ namespace score = simulation::score;
 using Json = nlohmann::ordered_json;
 
 struct ScoreOptions {
+  tune::TuningOptions runs;
   std::filesystem::path truth;
   std::string world;
   std::filesystem::path trajectory;
@@ -142,32 +144,59 @@ void run_score(const ScoreOptions& options) {
 
 }  // namespace
 
+namespace {
+
+/// With a scenario the map's changes are scored, too; that needs all of these.
+void score_simulation(ScoreOptions& options) {
+  const auto one = [](const std::vector<std::string>& given, const char* option) {
+    if (given.size() != 1) throw CLI::RequiredError(option);
+    return given.front();
+  };
+  options.truth = one(options.runs.truths, "--truth");
+  options.map = one(options.runs.maps, "--map");
+  options.json = options.runs.as_json;
+  if (options.trajectory.empty()) throw CLI::RequiredError("--trajectory");
+  if (options.start_map.empty()) throw CLI::RequiredError("--start-map");
+  run_score(options);
+}
+
+void add_simulation_options(CLI::App& command, ScoreOptions& options) {
+  const std::string group = "A simulation and its map: with --truth, --map";
+  command
+      .add_option("--world", options.world,
+                  "the scenario that was simulated: a YAML file, or the name of a delivered one")
+      ->group(group);
+  command.add_option("--trajectory", options.trajectory, "TUM file")->group(group);
+  command.add_option("--start-map", options.start_map, "the map at the start (YAML)")->group(group);
+  command.add_option("--range", options.range_m, "how far the robot sees, m (default: the scenario's laser)")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command.add_option("--face-beams", options.face_beams, "beams of one scan that make a face seen (default 3)")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+}
+
+}  // namespace
+
 void add_score(CLI::App& app) {
   auto options = std::make_shared<ScoreOptions>();
-  CLI::App& command = *app.add_subcommand("score", "a trajectory and a map against the truth of a simulation");
-  command.add_option("--truth", options->truth, "what deltamap sim --truth wrote")->required();
-  command
-      .add_option("--world", options->world,
-                  "the scenario that was simulated: a YAML file, or the name of a delivered one")
-      ->required();
-  command.add_option("--trajectory", options->trajectory, "TUM file")->required();
-  command.add_option("--map", options->map, "the map at the end (YAML)")->required();
-  command.add_option("--start-map", options->start_map, "the map at the start (YAML)")->required();
-  command.add_option("--range", options->range_m, "how far the robot sees, m (default: the scenario's laser)")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--face-beams", options->face_beams, "beams of one scan that make a face seen (default 3)")
-      ->check(CLI::PositiveNumber);
-  command.add_flag("--json", options->json, "print JSON");
+  CLI::App& command = *app.add_subcommand("score", "what runs are worth: against the true way, or without any");
+  command.add_option("runs", options->runs.recordings, "folders of runs, or recordings, which are replayed");
+  command.add_option("--config", options->runs.config, "settings of the replays; as delivered where it is not given");
+  command.add_option("--seeds", options->runs.seeds, "each recording with seeds 1 to N (default 4)")
+      ->check(CLI::Range(1, 10000));
+  tune::add_tuning_options(command, options->runs);
+  add_simulation_options(command, *options);
   add_score_relations(command);
   CLI::App& relations = *command.get_subcommand("relations");
   for (CLI::Option* option : command.get_options()) {
     if (option != command.get_help_ptr()) relations.excludes(option);  // its own come after its name
   }
-  relations.preparse_callback([&command](std::size_t) {
-    for (CLI::Option* option : command.get_options()) option->required(false);
-  });
   command.callback([options, &command] {
-    if (command.get_subcommands().empty()) run_score(*options);
+    if (!command.get_subcommands().empty()) return;
+    if (!options->world.empty()) return score_simulation(*options);
+    if (options->runs.recordings.empty()) throw CLI::RequiredError("a folder of a run, or a recording, or --world");
+    tune::score_runs(options->runs);
   });
 }
 

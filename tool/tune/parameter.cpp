@@ -82,6 +82,10 @@ Parameter range_of(const std::string& text, const daemon::SettingKey& key, const
 }  // namespace
 
 std::string Parameter::at(double share) const {
+  if (!is_range) {
+    const auto index = static_cast<std::size_t>(share * static_cast<double>(values.size()));
+    return values[std::min(index, values.size() - 1)];
+  }
   const double value = is_logarithmic ? low * std::pow(high / low, share) : low + share * (high - low);
   if (is_whole) return std::to_string(std::llround(value));
   if (share == 0.0 || share == 1.0) return shortest_text(share == 0.0 ? low : high);

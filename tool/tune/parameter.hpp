@@ -17,7 +17,7 @@ struct Parameter {
   bool is_logarithmic = false;  ///< equal factors, not equal steps
   bool is_whole = false;
 
-  /// The value at a share of the range, 0 to 1, as YAML.
+  /// The value at a share of the range, or of the list, 0 to 1, as YAML.
   [[nodiscard]] std::string at(double share) const;
 };
 

@@ -113,7 +113,8 @@ std::string verdict_of(const PairedDifference& second_less_first, const Measure&
 }
 
 std::string scope_of(const PairedDifference& difference) {
-  const std::string pairs = std::to_string(difference.pairs) + " pairs of " + std::to_string(difference.recordings) +
+  const std::string pairs = std::to_string(difference.pairs) + (difference.pairs == 1 ? " pair of " : " pairs of ") +
+                            std::to_string(difference.recordings) +
                             (difference.recordings == 1 ? " recording" : " recordings");
   if (difference.of == PairedDifference::Of::kRecordings) return pairs + "; intervals are of recordings of their kind";
   if (difference.of == PairedDifference::Of::kSeeds)

@@ -31,7 +31,7 @@ struct Ranked {
   double mean = 0.0;
   std::vector<double> of_drives{};  ///< means over the seeds
   PairedDifference from_best{};     ///< of the value itself, not of its cost; nothing of the best
-  bool is_worse = false;          ///< shown to be
+  bool is_worse = false;            ///< shown to be
 };
 
 struct Ranking {

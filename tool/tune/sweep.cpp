@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "core/files/replace_file.hpp"
-#include "daemon/telemetry/version.hpp"
 #include "tool/subcommands.hpp"
+#include "tool/tune/optimize.hpp"
 #include "tool/tune/parameter.hpp"
+#include "tool/tune/sweep_folder.hpp"
+#include "tool/tune/sweep_page.hpp"
 #include "tool/tune/tuning_options.hpp"
 #include "tool/tune/tuning_result.hpp"
 
@@ -24,12 +24,7 @@ using tune::Variant;
 
 constexpr std::size_t kMostSettings = 10000;
 
-struct SweepOptions {
-  tune::TuningOptions common;
-  std::vector<std::string> params;
-  std::filesystem::path out = "sweep";
-  bool anew = false;
-};
+using tune::SweepOptions;
 
 std::vector<Parameter> parameters_of(const std::vector<std::string>& texts) {
   std::vector<Parameter> parameters;
@@ -67,39 +62,6 @@ std::vector<Variant> grid_of(const std::vector<Parameter>& parameters, const Swe
   return variants;
 }
 
-/// What all runs of the folder have in common.
-std::string header_of(const Drives& drives, const Variant& base) {
-  nlohmann::ordered_json header{
-      {"made_by", std::string{daemon::version()} + ", commit " + std::string{daemon::commit()}}};
-  for (std::size_t i = 0; i < drives.size(); ++i) {
-    const tune::DriveFiles& files = drives[i]->files();
-    nlohmann::ordered_json drive{
-        {"content", drives[i]->identity()}, {"of_laser", files.way.of_laser}, {"from_s", files.from_s}};
-    if (files.to_s < 1e300) drive["to_s"] = files.to_s;
-    drive["settings"] = nlohmann::ordered_json::object();
-    for (const auto& [key, value] : daemon::changed_settings(base.settings[i])) drive["settings"][key] = value;
-    header["drives"][files.name] = drive;
-  }
-  return header.dump();
-}
-
-/// A person who ends it, or a full disk, keeps what is done.
-std::vector<tune::MeasuredRun> runs_or_how_to_go_on(const std::vector<tune::WantedRun>& wanted,
-                                                    const std::vector<Variant>& variants, Drives& drives,
-                                                    tune::RunBook& book, const SweepOptions& options) {
-  const auto is_interrupted = tune::watch_for_interrupt();
-  try {
-    return tune::results_of(wanted, variants, drives, &book, {tune::jobs_of(options.common), false, is_interrupted});
-  } catch (const std::runtime_error&) {
-    if (!is_interrupted()) throw;
-    const auto done = static_cast<std::size_t>(std::count_if(wanted.begin(), wanted.end(), [&](const auto& one) {
-      return book.run(tune::key_of(one, variants, drives)).has_value();
-    }));
-    throw std::runtime_error("interrupted: " + std::to_string(done) + " of " + std::to_string(wanted.size()) +
-                             " runs are kept in " + options.out.string() + "; the same command goes on from there");
-  }
-}
-
 void tell(const tune::TuningResult& result, const tune::Ranking& ranking, bool as_json) {
   if (as_json) {
     std::cout << tune::sweep_json(result, ranking);
@@ -114,16 +76,18 @@ void run_sweep(const SweepOptions& options) {
   Drives drives = tune::drives_of(options.common);
   const tune::Measure& measure = tune::deciding_measure(options.common, drives);
   const Variant base = tune::variant_of("as given", options.common.config, {}, drives);
+  if (options.budget > 0) return tune::optimize(options, parameters, drives, base, measure);
   std::vector<Variant> variants = grid_of(parameters, options, drives);
   tune::warn_of(drives, base);
-  tune::RunBook book{options.out, header_of(drives, base), options.anew};
+  tune::RunBook book{options.out, tune::header_of(drives, base), options.anew};
   const auto seeds = tune::seeds_from(1, options.common.seeds);
   const auto wanted = tune::every_run(variants.size(), drives.size(), seeds);
-  auto runs = runs_or_how_to_go_on(wanted, variants, drives, book, options);
+  auto runs = tune::kept_results(wanted, variants, drives, book, options);
   tune::warn_of_foreign_maps(wanted, runs, drives);
   const tune::TuningResult result{drives, std::move(variants), seeds, wanted, std::move(runs), measure};
   const tune::Ranking ranking = result.ranking();
   replace_file(options.out / "sweep.json", tune::sweep_json(result, ranking));
+  replace_file(options.out / "index.html", tune::sweep_page(result, ranking));
   tell(result, ranking, options.common.as_json);
 }
 
@@ -144,6 +108,15 @@ void add_sweep(CLI::App& app) {
   command.add_option("--out", options->out,
                      "folder for the runs and the result (default sweep); goes on with what is there");
   command.add_flag("--anew", options->anew, "leave what is there");
+  command
+      .add_option("--optimize", options->budget,
+                  "search the ranges of all keys with so many runs, in place of every value")
+      ->check(CLI::Range(1, 1000000));
+  command
+      .add_option("--hold-out", options->held_out,
+                  "so many recordings, the last ones, that --optimize keeps for the confirmation")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--search-seed", options->search_seed, "of what --optimize draws (default 1)");
   tune::add_tuning_options(command, options->common);
   command.callback([options] { run_sweep(*options); });
 }

@@ -29,22 +29,6 @@ std::string of_drive(const std::vector<std::string>& given, std::size_t drive, s
   return own == "-" ? "" : own;
 }
 
-TrueWay true_way_of(const TuningOptions& options, std::size_t drive) {
-  const std::size_t drives = options.recordings.size();
-  TrueWay way;
-  const auto look = [&](TrueWay::Kind kind, const std::vector<std::string>& given, const std::string& option) {
-    const std::string file = of_drive(given, drive, drives, option);
-    if (file.empty()) return;
-    if (way.kind != TrueWay::Kind::kNone)
-      throw daemon::SettingsError(option + ": a recording has one true way: --reference, --relations or --truth");
-    way = {kind, file, options.of_laser && kind == TrueWay::Kind::kReference};
-  };
-  look(TrueWay::Kind::kReference, options.references, "--reference");
-  look(TrueWay::Kind::kRelations, options.relations, "--relations");
-  look(TrueWay::Kind::kSimulation, options.truths, "--truth");
-  return way;
-}
-
 /// Of "2:key=value" the number; 0 where the text is of all drives.
 std::size_t drive_of_override(const std::string& text) {
   const std::size_t colon = text.find(':');
@@ -80,6 +64,26 @@ std::string name_of(const std::string& recording, std::set<std::string>& taken) 
 
 }  // namespace
 
+TrueWay true_way_of(const TuningOptions& options, std::size_t drive) {
+  const std::size_t drives = options.recordings.size();
+  TrueWay way;
+  const auto look = [&](TrueWay::Kind kind, const std::vector<std::string>& given, const std::string& option) {
+    const std::string file = of_drive(given, drive, drives, option);
+    if (file.empty()) return;
+    if (way.kind != TrueWay::Kind::kNone)
+      throw daemon::SettingsError(option + ": a recording has one true way: --reference, --relations or --truth");
+    way = {kind, file, options.of_laser && kind == TrueWay::Kind::kReference};
+  };
+  look(TrueWay::Kind::kReference, options.references, "--reference");
+  look(TrueWay::Kind::kRelations, options.relations, "--relations");
+  look(TrueWay::Kind::kSimulation, options.truths, "--truth");
+  return way;
+}
+
+std::filesystem::path map_of(const TuningOptions& options, std::size_t drive) {
+  return of_drive(options.maps, drive, options.recordings.size(), "--map");
+}
+
 void add_tuning_options(CLI::App& command, TuningOptions& options) {
   command
       .add_option("--map", options.maps,
@@ -110,7 +114,7 @@ Drives drives_of(const TuningOptions& options) {
   const std::size_t count = options.recordings.size();
   for (std::size_t i = 0; i < count; ++i) {
     DriveFiles files{.name = name_of(options.recordings[i], taken), .recording = options.recordings[i]};
-    files.map = of_drive(options.maps, i, count, "--map");
+    files.map = map_of(options, i);
     if (files.map.empty())
       throw daemon::SettingsError(options.recordings[i] + ": a recording needs --map, as `deltamap replay` does");
     files.way = true_way_of(options, i);
@@ -174,18 +178,16 @@ void warn_of(Drives& drives, const Variant& variant) {
 
 void warn_of_foreign_maps(const std::vector<WantedRun>& wanted, const std::vector<MeasuredRun>& runs,
                           const Drives& drives) {
-  constexpr double kHardly = 0.05;  // of the time: a pose that fits is called right or undecided in its own building
+  constexpr double kHardly = 0.6;  // of the beams: 0.85 and more agree in their own building, 0.5 at most in another
   for (std::size_t drive = 0; drive < drives.size(); ++drive) {
     double most = -1.0;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (wanted[i].drive != drive) continue;
-      const double tracked = 1.0 - number_of(runs[i].numbers, "untracked_share");
-      most = std::max(most, tracked - number_of(runs[i].numbers, "wrong_share"));
+      if (wanted[i].drive == drive) most = std::max(most, number_of(runs[i].numbers, "agreement"));
     }
     if (most < 0.0 || most >= kHardly) continue;
-    std::cerr << "deltamap: warning: " << drives[drive]->files().name << ": its scans fitted "
-              << drives[drive]->files().map.string() << " for " << std::lround(100.0 * std::max(0.0, most))
-              << " % of the time at best: is that the map of another site, or the start pose wrong?\n";
+    std::cerr << "deltamap: warning: " << drives[drive]->files().name << ": at most " << std::lround(100.0 * most)
+              << " % of its beams agree with " << drives[drive]->files().map.string()
+              << " in any run: is that the map of another site, or the start pose wrong?\n";
   }
 }
 

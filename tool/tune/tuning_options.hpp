@@ -44,6 +44,11 @@ void add_tuning_options(CLI::App& command, TuningOptions& options);
 /// Throws std::runtime_error, SettingsError.
 [[nodiscard]] Drives drives_of(const TuningOptions& options);
 
+/// Of one of the recordings. Throw SettingsError.
+[[nodiscard]] TrueWay true_way_of(const TuningOptions& options, std::size_t drive);
+/// Empty where none is given.
+[[nodiscard]] std::filesystem::path map_of(const TuningOptions& options, std::size_t drive);
+
 /// The settings of each drive: configuration, overrides of all, those of the drive, then these. Throws SettingsError.
 [[nodiscard]] Variant variant_of(const std::string& name, const std::string& config,
                                  const std::vector<std::pair<std::string, std::string>>& values, const Drives& drives);
@@ -59,7 +64,7 @@ void add_tuning_options(CLI::App& command, TuningOptions& options);
 
 /// What a person should know of the drives before all else, on standard error: what recordings lack, the mount.
 void warn_of(Drives& drives, const Variant& variant);
-/// And behind it: recordings that hardly ever fitted their map in any run.
+/// And behind it: recordings whose beams agree with their map in no run.
 void warn_of_foreign_maps(const std::vector<WantedRun>& wanted, const std::vector<MeasuredRun>& runs,
                           const Drives& drives);
 

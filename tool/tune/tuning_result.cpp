@@ -186,7 +186,9 @@ std::string compare_words(const TuningResult& result, std::size_t first, std::si
          text_of(difference, result.measure) + "; " + scope_of(difference) + ")";
 }
 
-std::string compare_json(const TuningResult& result) {
+namespace {
+
+ResultJson json_of_comparison(const TuningResult& result) {
   ResultJson json = head_of(result);
   json["settings"] = ResultJson::array();
   for (std::size_t i = 0; i < result.variants.size(); ++i)
@@ -207,6 +209,19 @@ std::string compare_json(const TuningResult& result) {
     json["words"].push_back(compare_words(result, 0, second));
   }
   json["runs"] = json_of_runs(result);
+  return json;
+}
+
+}  // namespace
+
+std::string compare_json(const TuningResult& result) { return json_of_comparison(result).dump(2) + "\n"; }
+
+std::string optimize_json(const TuningResult& pairs, const std::vector<std::string>& words) {
+  ResultJson json = json_of_comparison(pairs);
+  json["words"] = words;
+  json["winner"] = ResultJson::object();
+  for (const auto& [key, value] : pairs.variants.back().values)
+    json["winner"][key] = ResultJson::accept(value) ? ResultJson::parse(value) : ResultJson(value);
   return json.dump(2) + "\n";
 }
 

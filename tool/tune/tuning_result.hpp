@@ -43,5 +43,7 @@ struct TextGrid {
 [[nodiscard]] TextGrid compare_table(const TuningResult& result, std::size_t first, std::size_t second);
 [[nodiscard]] std::string compare_words(const TuningResult& result, std::size_t first, std::size_t second);
 [[nodiscard]] std::string compare_json(const TuningResult& result);
+/// The winner of a search against the settings as given, which come first; or these alone.
+[[nodiscard]] std::string optimize_json(const TuningResult& pairs, const std::vector<std::string>& words);
 
 }  // namespace deltamap::tool::tune

@@ -101,7 +101,7 @@ std::vector<MeasuredRun> results_of(const std::vector<WantedRun>& wanted, const 
     MeasuredRun& result = results[order[i]];
     if (book != nullptr) book->add(key_of(wanted[order[i]], variants, drives), result);
     if (!options.keeps_poses) result.poses = {};
-    if (--left[wanted[order[i]].drive] == 0) drives[wanted[order[i]].drive]->forget_decoded();
+    if (--left[wanted[order[i]].drive] == 0 && !options.keeps_decoded) drives[wanted[order[i]].drive]->forget_decoded();
   };
   work_through(order.size(), options.jobs, work, done);
   return results;

@@ -40,6 +40,7 @@ struct WantedRun {
 struct RunnerOptions {
   int jobs = 1;
   bool keeps_poses = false;                ///< MeasuredRun::poses
+  bool keeps_decoded = false;              ///< the recordings, for runs that follow
   std::function<bool()> is_interrupted{};  ///< any thread; empty: never
 };
 

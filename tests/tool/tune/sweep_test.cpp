@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// `deltamap sweep`, `compare` and `score` on a short drive through a small room.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/files/grid_file.hpp"
+#include "daemon/settings/fingerprint.hpp"
+#include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
+#include "tests/support/files/tool_run.hpp"
+#include "tests/support/scans/scripted_drive.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::content_of;
+using test::run_deltamap;
+using test::ToolRun;
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+class SweepTest : public testing::Test {
+ protected:
+  SweepTest() {
+    test::write_drive(file("drive.log"), 6.0);
+    write_grid(test::small_room(false), file("room.yaml"));
+    EXPECT_EQ(run_deltamap({"import", "carmen", file("drive.log"), file("drive.pcapng")}).exit_code, 0);
+    std::string reference = "# t x y theta\n";
+    for (int scan = 0; scan * 0.106 < 6.0; ++scan) {
+      const Pose2 pose = test::pose_on_drive(scan * 0.106);
+      char line[96];
+      (void)std::snprintf(line, sizeof line, "%.6f %.4f %.4f %.5f\n", 1e9 + scan * 0.106, pose.x, pose.y, pose.theta);
+      reference += line;
+    }
+    (void)folder_.write("truth.txt", reference);
+  }
+
+  [[nodiscard]] std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  /// With the room, the start and the truth.
+  [[nodiscard]] ToolRun run(const std::string& command, const Words& more) const {
+    const Pose2 start = test::pose_on_drive(0.0);
+    char pose[96];
+    (void)std::snprintf(pose, sizeof pose, "%.3f,%.3f,%.1f", start.x, start.y, degrees(start.theta));
+    Words words{command,           file("drive.pcapng"), "--map",           file("room.yaml"), "--reference",
+                file("truth.txt"), "--initial-pose",     std::string{pose}, "--jobs",          "2"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_deltamap(words);
+  }
+  [[nodiscard]] ToolRun sweep(const Words& more) const {
+    Words words{"--param", "localization.beams=20:60:2", "--seeds", "2", "--out", file("sweep")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run("sweep", words);
+  }
+  [[nodiscard]] std::vector<std::string> lines_of_book() const {
+    std::vector<std::string> lines;
+    std::string text = content_of(file("sweep/runs.jsonl"));
+    for (std::size_t end; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1))
+      lines.push_back(text.substr(0, end));
+    return lines;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(SweepTest, RunsAreThoseOfReplayByteForByte) {
+  const ToolRun swept = sweep({"--json"});
+  ASSERT_EQ(swept.exit_code, 0) << swept.errors;
+  const Json json = Json::parse(swept.output);
+  ASSERT_EQ(json["runs"].size(), 4u);
+  const Pose2 start = test::pose_on_drive(0.0);
+  char pose[96];
+  (void)std::snprintf(pose, sizeof pose, "--initial-pose=%.3f,%.3f,%.1f", start.x, start.y, degrees(start.theta));
+  std::vector<std::string> found;
+  for (const Json& run : json["runs"]) {
+    const std::string seed = std::to_string(run["seed"].get<int>());
+    const ToolRun replayed = run_deltamap({"replay", file("drive.pcapng"), "--map", file("room.yaml"), pose, "--seed",
+                                           seed, "--set", run["setting"].get<std::string>(), "--out", file("run")});
+    ASSERT_EQ(replayed.exit_code, 0) << replayed.errors;
+    EXPECT_EQ(run["trajectory"], daemon::hex_of(daemon::fingerprint_of(content_of(file("run/trajectory.tum")))));
+    EXPECT_EQ(run["map"], daemon::hex_of(grid_hash(read_grid(file("run/map.yaml")))));
+    found.push_back(run["trajectory"]);
+  }
+  std::sort(found.begin(), found.end());
+  EXPECT_GT(std::unique(found.begin(), found.end()) - found.begin(), 1) << "settings and seeds make a difference";
+}
+
+TEST_F(SweepTest, TellsEachValueAndKeepsTheResult) {
+  const ToolRun swept = sweep({});
+  ASSERT_EQ(swept.exit_code, 0) << swept.errors;
+  EXPECT_NE(swept.output.find("localization.beams=20 "), std::string::npos) << swept.output;
+  EXPECT_NE(swept.output.find("localization.beams=60 "), std::string::npos) << swept.output;
+  EXPECT_NE(swept.output.find("error_rmse_m"), std::string::npos) << swept.output;
+  const Json kept = Json::parse(content_of(file("sweep/sweep.json")));
+  EXPECT_EQ(kept["settings"][0]["values"]["localization.beams"], 20);
+  EXPECT_LT(kept["settings"][1]["mean"].get<double>(), 0.05) << "a pose that is tracked";
+}
+
+TEST_F(SweepTest, LeavesAPageWithTheBestMarkedAndAChart) {
+  ASSERT_EQ(sweep({}).exit_code, 0);
+  const std::string page = content_of(file("sweep/index.html"));
+  EXPECT_NE(page.find("class=\"met\""), std::string::npos) << "the best";
+  EXPECT_NE(page.find("error_rmse_m over localization.beams"), std::string::npos);
+  EXPECT_NE(page.find("--page"), std::string::npos) << "the look of the reports";
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST_F(SweepTest, GoesOnWhereItWasInterruptedWithTheSameResult) {
+  ASSERT_EQ(sweep({}).exit_code, 0);
+  const std::string whole = content_of(file("sweep/sweep.json"));
+  const auto lines = lines_of_book();
+  ASSERT_EQ(lines.size(), 5u) << "a header and a line a run";
+  (void)folder_.write("sweep/runs.jsonl", lines[0] + "\n" + lines[1] + "\n" + lines[2].substr(0, 40));
+  ASSERT_EQ(sweep({}).exit_code, 0);
+  const auto again = lines_of_book();
+  ASSERT_EQ(again.size(), 5u);
+  EXPECT_EQ(again[1], lines[1]) << "what was done is not done again";
+  const Json a = Json::parse(whole);
+  const Json b = Json::parse(content_of(file("sweep/sweep.json")));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(a["runs"][i]["trajectory"], b["runs"][i]["trajectory"]);
+}
+
+TEST_F(SweepTest, RefusesToGoOnWithOtherSettingsAndSaysWhich) {
+  ASSERT_EQ(sweep({}).exit_code, 0);
+  const ToolRun other = sweep({"--set", "localization.field.random_share=0.1"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_NE(other.errors.find("was begun with something else"), std::string::npos) << other.errors;
+  EXPECT_NE(other.errors.find("localization.field.random_share: not given, now"), std::string::npos) << other.errors;
+  EXPECT_EQ(sweep({"--set", "localization.field.random_share=0.1", "--anew"}).exit_code, 0);
+}
+
+TEST_F(SweepTest, RefusesKeysAndValuesThatThereAreNot) {
+  const auto error_of = [&](const std::string& param) {
+    const ToolRun refused = run("sweep", {"--param", param, "--out", file("none")});
+    EXPECT_EQ(refused.exit_code, 2) << param;
+    EXPECT_FALSE(fs::exists(file("none"))) << param;
+    return refused.errors;
+  };
+  const auto expect = [&](const std::string& param, const std::string& what) {
+    EXPECT_NE(error_of(param).find(what), std::string::npos) << param << ": " << error_of(param);
+  };
+  expect("localization.beems=1:9:3", "nearest key localization.beams");
+  expect("localization.beams=-5:9:3", "needs a whole number in its range (0 to 1000), not '-5'");
+  expect("localization.beams=9:1:3", "a range goes up");
+  expect("localization.beams=0:9:3:log", "begins above 0");
+  expect("localization.beams=1:9", "needs a whole number");
+  expect("localization.beams=1:9:1", "n is a whole number from 2");
+  expect("recording.file=a,b", "changes nothing of a replay");
+  expect("seed=1:9:3", "--seeds");
+  expect("mapping.method=paper,vidence", "mapping.method: needs");
+}
+
+TEST_F(SweepTest, NamesWhatIsMissing) {
+  const ToolRun no_recording = run_deltamap({"sweep", file("nothing.pcapng"), "--map", file("room.yaml"), "--param",
+                                             "localization.beams=1,2", "--out", file("sweep")});
+  EXPECT_EQ(no_recording.exit_code, 1);
+  EXPECT_NE(no_recording.errors.find("nothing.pcapng"), std::string::npos) << no_recording.errors;
+  const ToolRun no_map =
+      run_deltamap({"sweep", file("drive.pcapng"), "--param", "localization.beams=1,2", "--out", file("sweep")});
+  EXPECT_EQ(no_map.exit_code, 2);
+  EXPECT_NE(no_map.errors.find("needs --map"), std::string::npos) << no_map.errors;
+  (void)folder_.write("truth.txt", "5 1 1 0\n");
+  const ToolRun other_truth = sweep({});
+  EXPECT_EQ(other_truth.exit_code, 1);
+  EXPECT_NE(other_truth.errors.find("is it of another recording?"), std::string::npos) << other_truth.errors;
+  EXPECT_EQ(sweep({"--by", "error_rms_m"}).exit_code, 1);
+  EXPECT_NE(sweep({"--by", "error_rms_m"}).errors.find("nearest error_rmse_m"), std::string::npos);
+}
+
+TEST_F(SweepTest, SuspectsAMapOfAnotherSite) {
+  OccupancyGrid other{{200, 160, 0.05, {0.0, 0.0}}, CellState::kFree};
+  for (int column = 100; column < 200; ++column) {
+    for (int row = 0; row < 160; row += 20) other.set({column, row}, CellState::kOccupied);
+  }
+  write_grid(other, file("room.yaml"));
+  const ToolRun swept = sweep({"--set", "mapping.enabled=false"});
+  EXPECT_NE(swept.errors.find("is that the map of another site"), std::string::npos) << swept.errors << swept.output;
+}
+
+TEST_F(SweepTest, FindsABetterSettingWithinABudgetAndConfirmsItOnOtherSeeds) {
+  const Words keys{"--param",    "localization.motion.metre_per_metre=0.01:0.5:9:log",
+                   "--param",    "localization.beams=5:100:9",
+                   "--optimize", "30",
+                   "--out",      file("sweep"),
+                   "--json"};
+  const ToolRun searched = run("sweep", keys);
+  ASSERT_EQ(searched.exit_code, 0) << searched.errors;
+  const Json json = Json::parse(searched.output);
+  EXPECT_LE(lines_of_book().size() - 1, 30u) << "the budget";
+  for (const Json& run : json["runs"]) EXPECT_GE(run["seed"].get<int>(), 1001) << "seeds that the search has not seen";
+  const std::string last = json["words"].back();
+  EXPECT_TRUE(last.starts_with("confirmed") || last.starts_with("nothing")) << last;
+  const auto lines = lines_of_book();
+  ASSERT_EQ(run("sweep", keys).exit_code, 0);
+  EXPECT_EQ(lines_of_book(), lines) << "the same search needs no run again";
+  const ToolRun few = run("sweep", {"--param", "localization.beams=5:100:9", "--optimize", "8", "--out", file("few")});
+  EXPECT_EQ(few.exit_code, 2);
+  EXPECT_NE(few.errors.find("are too few"), std::string::npos) << few.errors;
+}
+
+TEST_F(SweepTest, ComparesConfigurationsAndSaysWhereTheyDoNotDiffer) {
+  const std::string a = folder_.write("a.yaml", "localization:\n  beams: 60\n").string();
+  const std::string b = folder_.write("b.yaml", "localization:\n  beams: 60\n").string();
+  const ToolRun same = run("compare", {"--config", a, "--config", b, "--seeds", "2"});
+  ASSERT_EQ(same.exit_code, 0) << same.errors;
+  EXPECT_NE(same.output.find("error_rmse_m, a.yaml against b.yaml: no difference that these recordings can show"),
+            std::string::npos)
+      << same.output;
+  (void)folder_.write("b.yaml", "mapping:\n  enabled: false\nlocalization:\n  beams: 3\n");
+  const Json json = Json::parse(run("compare", {"--config", a, "--config", b, "--seeds", "3", "--json"}).output);
+  EXPECT_EQ(json["runs"].size(), 6u);
+  EXPECT_EQ(run("compare", {"--config", a}).exit_code, 2) << "there is nothing to compare";
+}
+
+TEST_F(SweepTest, ScoresRecordingsAndFoldersAlikeAndWithoutAnyTruth) {
+  const ToolRun recording = run("score", {"--seeds", "2", "--json"});
+  ASSERT_EQ(recording.exit_code, 0) << recording.errors;
+  const Json scored = Json::parse(recording.output)[0]["measures"];
+  EXPECT_LT(scored["error_rmse_m"]["mean"].get<double>(), 0.05);
+  EXPECT_GT(scored["agreement"]["mean"].get<double>(), 0.8) << "the box is not written yet";
+  EXPECT_GE(scored["repeatability_m"]["mean"].get<double>(), 0.0);
+  EXPECT_LT(scored["repeatability_m"]["mean"].get<double>(), 0.05);
+  const Pose2 start = test::pose_on_drive(0.0);
+  char pose[96];
+  (void)std::snprintf(pose, sizeof pose, "--initial-pose=%.3f,%.3f,%.1f", start.x, start.y, degrees(start.theta));
+  ASSERT_EQ(run_deltamap(
+                {"replay", file("drive.pcapng"), "--map", file("room.yaml"), pose, "--seed", "1", "--out", file("run")})
+                .exit_code,
+            0);
+  const ToolRun folder = run_deltamap({"score", file("run"), "--reference", file("truth.txt"), "--json"});
+  ASSERT_EQ(folder.exit_code, 0) << folder.errors;
+  const Json of_folder = Json::parse(folder.output)[0]["measures"];
+  EXPECT_NEAR(of_folder["error_rmse_m"]["mean"].get<double>(), scored["error_rmse_m"]["mean"].get<double>(), 0.01);
+  EXPECT_NEAR(of_folder["agreement"]["mean"].get<double>(), scored["agreement"]["mean"].get<double>(), 0.03);
+  const ToolRun blind = run_deltamap({"score", file("run")});
+  ASSERT_EQ(blind.exit_code, 0) << blind.errors;
+  EXPECT_EQ(blind.output.find("error_rmse_m"), std::string::npos);
+  EXPECT_NE(blind.output.find("agreement"), std::string::npos) << blind.output;
+  EXPECT_NE(blind.errors.find("errors are not known"), std::string::npos) << blind.errors;
+  fs::remove(file("drive.pcapng"));
+  const ToolRun gone = run_deltamap({"score", file("run")});
+  EXPECT_EQ(gone.exit_code, 0);
+  EXPECT_NE(gone.errors.find("drive.pcapng is not there: whether scans agree"), std::string::npos) << gone.errors;
+}
+
+TEST_F(SweepTest, ScoreAsksForWhatItNeeds) {
+  EXPECT_EQ(run_deltamap({"score"}).exit_code, 2);
+  EXPECT_EQ(run_deltamap({"score", "--world", "w.yaml"}).exit_code, 2);
+  EXPECT_EQ(run_deltamap({"score", file("room.yaml") + ".none"}).exit_code, 2) << "a recording needs --map";
+}
+
+}  // namespace
+}  // namespace deltamap::tool
