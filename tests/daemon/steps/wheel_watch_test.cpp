@@ -7,7 +7,7 @@
 namespace deltamap::daemon {
 namespace {
 
-constexpr double kPeriod_s = 0.2;
+constexpr double kWatchedEach_s = 0.2;
 
 /// What is said while a share of the scans contradicts the wheels.
 class WatchedWheels {
@@ -16,8 +16,8 @@ class WatchedWheels {
 
   std::string after(double duration_s, double share, double stood_m = 0.0) {
     std::string said;
-    for (double t = 0.0; t < duration_s - 1e-9; t += kPeriod_s) {
-      tracked_.scan.time += duration_from_seconds(kPeriod_s);
+    for (double t = 0.0; t < duration_s - 1e-9; t += kWatchedEach_s) {
+      tracked_.scan.time += duration_from_seconds(kWatchedEach_s);
       tracked_.stood_m = stood_m;
       odometry_.odom_from_robot.x += moves_ ? 0.05 : 0.0;
       watch_.observe(odometry_);
