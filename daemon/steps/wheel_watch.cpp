@@ -40,7 +40,7 @@ LogLine WheelWatch::judged(std::size_t count) {
   const double share = static_cast<double>(count) / static_cast<double>(seen_);
   const double limit = has_moved_ ? kContradict : kContradictStanding;
   if (contradict_) {
-    contradict_ = share >= limit / 2.0;
+    contradict_ = !has_moved_ || share >= limit / 2.0;
     return {contradict_ ? "" : "wheels and scans agree again"};
   }
   const bool is_enough = has_moved_ ? seen_ >= kFewestScans && watched_s_ >= kShortest_s : count >= kFewestStanding;
