@@ -60,17 +60,17 @@ void HeadingCensus::add_turn(const Told& now) {
   last_ = now;
 }
 
-bool HeadingCensus::is_way_long() const { return ways_ >= kFewestWays; }
+bool HeadingCensus::has_way() const { return ways_ >= kFewestWays; }
 
 bool HeadingCensus::lies_along_degrees() const {
-  if (!is_way_long() || mean(along_as_degrees_) < kAlong || along_as_degrees_ <= along_as_radians_) return false;
+  if (!has_way() || mean(along_as_degrees_) < kAlong || along_as_degrees_ <= along_as_radians_) return false;
   if (largest_ > kFarBeyond) return true;
   // A frame that is turned against the headings leaves them at one angle to the way.
   return std::hypot(mean(along_as_radians_), mean(across_as_radians_)) < kByChance;
 }
 
 HeadingUnit HeadingCensus::unit() const {
-  const bool lies_along_radians = is_way_long() && mean(along_as_radians_) >= kByChance;
+  const bool lies_along_radians = has_way() && mean(along_as_radians_) >= kByChance;
   const bool turns_too_far = more_than_turns_ >= kFewestTurns && !lies_along_radians;
   return lies_along_degrees() || turns_too_far ? HeadingUnit::kDegree : HeadingUnit::kRadian;
 }
@@ -81,8 +81,8 @@ std::string HeadingCensus::line() const {
            std::string(first_beyond_line_ ? "the first beyond a turn in line " : "the first pose is in line ") +
            std::to_string(first_beyond_line_.value_or(first_line_)) + "), where CARMEN has radians: read as degrees";
   }
-  const bool are_radians = is_way_long() && mean(along_as_radians_) >= kAlong &&
-                           mean(along_as_radians_) > mean(along_as_degrees_) + kClearly;
+  const bool are_radians =
+      has_way() && mean(along_as_radians_) >= kAlong && mean(along_as_radians_) > mean(along_as_degrees_) + kClearly;
   if (!first_beyond_line_ || are_radians) return "";
   return "headings of up to " + shortest_text(std::round(largest_ * 100.0) / 100.0) +
          " (the first beyond a turn in line " + std::to_string(*first_beyond_line_) +

@@ -17,6 +17,8 @@ class HeadingCensus {
   /// The robot's next pose, with its heading as it stands in the log.
   void add(std::size_t line, const Point2& place, double heading);
 
+  /// The poses have driven far enough for their way to tell.
+  [[nodiscard]] bool has_way() const;
   [[nodiscard]] HeadingUnit unit() const;
   /// One line where the headings are degrees, or may be; else "".
   [[nodiscard]] std::string line() const;
@@ -28,7 +30,6 @@ class HeadingCensus {
   };
   void add_way(const Told& now);
   void add_turn(const Told& now);
-  [[nodiscard]] bool is_way_long() const;
   [[nodiscard]] bool lies_along_degrees() const;
   [[nodiscard]] double mean(double sum) const { return sum / static_cast<double>(ways_); }
 

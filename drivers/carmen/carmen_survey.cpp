@@ -202,8 +202,8 @@ void find_dialect(CarmenSurvey& survey, const std::filesystem::path& log) {
   }
   clock.choose(survey);
   // Some logs have true poses for the laser alone.
-  const HeadingCensus& of_scans =
-      of_robot.unit() == HeadingUnit::kRadian && of_robot.line().empty() ? of_laser : of_robot;
+  const bool robot_tells = of_robot.has_way() || of_robot.unit() == HeadingUnit::kDegree;
+  const HeadingCensus& of_scans = robot_tells ? of_robot : of_laser;
   const HeadingCensus& headings = scans_carry_poses ? of_scans : of_odometry;
   survey.headings = headings.unit();
   if (std::string line = headings.line(); !line.empty()) survey.notes.push_back(std::move(line));
