@@ -69,24 +69,28 @@ bool HeadingCensus::lies_along_degrees() const {
   return std::hypot(mean(along_as_radians_), mean(across_as_radians_)) < kByChance;
 }
 
+/// Small headings that only degrees make fit may also be those of a robot that turns while it is pushed along one line.
 HeadingUnit HeadingCensus::unit() const {
   const bool lies_along_radians = has_way() && mean(along_as_radians_) >= kByChance;
   const bool turns_too_far = more_than_turns_ >= kFewestTurns && !lies_along_radians;
-  return lies_along_degrees() || turns_too_far ? HeadingUnit::kDegree : HeadingUnit::kRadian;
+  const bool are_degrees = (lies_along_degrees() && first_beyond_line_) || turns_too_far;
+  return are_degrees ? HeadingUnit::kDegree : HeadingUnit::kRadian;
 }
 
 std::string HeadingCensus::line() const {
-  if (unit() == HeadingUnit::kDegree) {
-    return "headings look like degrees (" +
-           std::string(first_beyond_line_ ? "the first beyond a turn in line " : "the first pose is in line ") +
-           std::to_string(first_beyond_line_.value_or(first_line_)) + "), where CARMEN has radians: read as degrees";
+  if (!first_beyond_line_) {
+    if (!lies_along_degrees()) return "";
+    return "headings lie along the way only as degrees (the first pose is in line " + std::to_string(first_line_) +
+           "): CARMEN has radians, and they are read so; are they degrees?";
   }
+  const std::string line = "(the first beyond a turn in line " + std::to_string(*first_beyond_line_) + ")";
+  if (unit() == HeadingUnit::kDegree)
+    return "headings look like degrees " + line + ", where CARMEN has radians: read as degrees";
   const bool are_radians =
       has_way() && mean(along_as_radians_) >= kAlong && mean(along_as_radians_) > mean(along_as_degrees_) + kClearly;
-  if (!first_beyond_line_ || are_radians) return "";
-  return "headings of up to " + shortest_text(std::round(largest_ * 100.0) / 100.0) +
-         " (the first beyond a turn in line " + std::to_string(*first_beyond_line_) +
-         "): CARMEN has radians, and they are read so; are they degrees?";
+  if (are_radians) return "";
+  return "headings of up to " + shortest_text(std::round(largest_ * 100.0) / 100.0) + " " + line +
+         ": CARMEN has radians, and they are read so; are they degrees?";
 }
 
 }  // namespace deltamap::drivers::carmen

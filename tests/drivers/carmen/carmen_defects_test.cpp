@@ -415,6 +415,17 @@ TEST_F(CarmenDefects, HeadingsThatMayBeDegreesAreDoubted) {
   EXPECT_TRUE(tells("headings of up to 85.94 (the first beyond a turn in line 2)")) << all_told();
 }
 
+TEST_F(CarmenDefects, SmallHeadingsThatFitTheWayOnlyAsDegreesAreDoubted) {
+  std::vector<Line> lines = drawn_lines();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const double along = static_cast<double>(i);
+    lines[i].robot = {1.5 + 0.06 * along, 2.0, radians(0.15 * along)};
+  }
+  look(log_of(in_degrees(lines, [](const Pose2& pose) { return degrees(pose.theta); })));
+  EXPECT_EQ(survey_.headings, HeadingUnit::kRadian);
+  EXPECT_TRUE(tells("headings lie along the way only as degrees (the first pose is in line 2)")) << all_told();
+}
+
 TEST_F(CarmenDefects, HeadingsInRadiansThatAreNotWrappedAreNoDegrees) {
   std::vector<Line> lines = drawn_lines();
   Pose2 robot{1.0, 1.0, 0.0};
