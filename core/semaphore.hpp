@@ -29,7 +29,8 @@ class Semaphore {
     const auto until = std::chrono::steady_clock::now().time_since_epoch() + patience;
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(until);
     const timespec deadline{
-        whole.count(), static_cast<long>(std::chrono::duration_cast<std::chrono::nanoseconds>(until - whole).count())};
+        static_cast<std::time_t>(whole.count()),
+        static_cast<long>(std::chrono::duration_cast<std::chrono::nanoseconds>(until - whole).count())};
     int result = 0;
     do {
       result = sem_clockwait(&semaphore_, CLOCK_MONOTONIC, &deadline);

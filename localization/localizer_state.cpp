@@ -44,6 +44,7 @@ Localizer::State::State(const LocalizerParams& given, std::shared_ptr<const Occu
 
 void Localizer::State::start_at(const particles::InitialPose& given) {
   was_found = false;
+  judgement.start_on_known_ground();
   const particles::Start start = particles::usable_start(*map, given);
   counts.poses_in_obstacle += start.kind == particles::StartKind::kCheck && !given.remembered ? 1 : 0;
   counts.poses_refused += start.kind == particles::StartKind::kAnywhere ? 1 : 0;
@@ -70,6 +71,7 @@ void Localizer::State::check_pose() {
 }
 
 void Localizer::State::start_anywhere() {
+  judgement.start_on_known_ground();
   forget_expected();
   given_up.reset();
   ++counts.searches;
@@ -277,7 +279,8 @@ void Localizer::State::judge(const Scan& scan, std::span<const RayInRobot> rays,
   const bool is_tracking = monitor.state() == LocalizerState::kTracking && !check.under_way();
   last_believed = is_tracking ? std::optional{believed.map_from_robot} : std::nullopt;
   seen.fit = sensor::explained_share(field, ends, believed.map_from_robot);
-  range_scale.observe(field, ends, scan.robot_from_laser.position(), believed.map_from_robot, seen.driven_m);
+  if (is_tracking)
+    range_scale.observe(field, ends, scan.robot_from_laser.position(), believed.map_from_robot, seen.driven_m);
   const bool blind = ends.size() == 0;  // says nothing of the pose but that it was not confirmed
   newest_fit = blind ? std::nullopt : std::optional{seen.fit};
   const double explained = blind ? 0.0 : seen.fit * static_cast<double>(ends.size());

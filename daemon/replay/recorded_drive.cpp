@@ -47,7 +47,7 @@ void watch_mount(RecordedDrive& drive, const Settings& settings) {
     if (!first) first = scan.time;
     const LogLine line = watch.observe(scan);
     if (line.text.empty()) continue;
-    drive.known_mount.told_at = scan.time;
+    drive.known_mount.told_at = scan.number;
     drive.mount_line = "after " + std::to_string(std::lround(seconds(scan.time - *first))) + " s: " + line.text;
     return;
   }
@@ -88,7 +88,9 @@ RunReport replay_again(const ReplayJob& job, const RecordedDrive& drive, const F
   const ReplayStart begun = replay_start(drive.recorded, job, map);
   require_pose_on(begun.start.map->geometry(), job.settings);
   KeptMessages source{drive};
-  Replay replay{{job, drive.recorded, begun, source, output}, {.known_mount = drive.known_mount, .tells_times = false}};
+  // A journal that is obeyed leaves out scans and reports, so that the watch sees others.
+  const auto known_mount = begun.journal == "obeyed" ? std::nullopt : std::optional{drive.known_mount};
+  Replay replay{{job, drive.recorded, begun, source, output}, {.known_mount = known_mount, .tells_times = false}};
   replay.run(progress);
   RunReport report = replay.finish();
   report.cpu_total_s = thread_cpu_s() - began_cpu_s;

@@ -81,8 +81,8 @@ void LocalizationStep::observe(const Odometry& odometry) {
   wheel_watch_.observe(odometry);
 }
 
-SensorDoubt LocalizationStep::sensor_doubt(Timestamp now) const {
-  const bool is_told = mount_watch_ ? mount_watch_->is_told() : known_mount_->told_at && *known_mount_->told_at <= now;
+SensorDoubt LocalizationStep::sensor_doubt(std::uint32_t scan) const {
+  const bool is_told = mount_watch_ ? mount_watch_->is_told() : known_mount_->told_at && *known_mount_->told_at <= scan;
   if (is_told) return SensorDoubt::kMount;
   if (fit_watch_.is_scale_told()) return SensorDoubt::kScale;
   return wheel_watch_.contradict() ? SensorDoubt::kWheels : SensorDoubt::kNone;
@@ -94,7 +94,7 @@ TrackedScan LocalizationStep::observe(Scan scan) {
   TrackedScan tracked = localizer_.observe(std::move(scan));
   tell(fit_watch_.observe(tracked, {fit(), localizer_.fit_of_all(), localizer_.range_scale()}));
   tell(wheel_watch_.observe(tracked, localizer_.counts().wheels_contradicted));
-  tracked.sensor_doubt = sensor_doubt(tracked.scan.time);
+  tracked.sensor_doubt = sensor_doubt(tracked.scan.number);
   tell_of_ground(tracked.estimate.belief.is_on_new_ground);
   learn_or_forget(tracked);
   last_map_from_robot_ = tracked.estimate.map_from_robot;

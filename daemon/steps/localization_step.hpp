@@ -47,7 +47,8 @@ void require_pose_on(const GridGeometry& map, const Settings& settings);
 
 /// What a recording's scans tell of the laser's mount, watched before.
 struct KnownMount {
-  std::optional<Timestamp> told_at{};  ///< the scan at which it shows to be another than set; nothing: never
+  std::optional<std::uint32_t>
+      told_at{};  ///< number of the scan at which it shows to be another than set; nothing: never
 };
 
 class LocalizationStep {
@@ -94,7 +95,7 @@ class LocalizationStep {
   void count_time(Timestamp time);
   void learn_or_forget(const TrackedScan& tracked);
   void tell(LogLine line);
-  [[nodiscard]] SensorDoubt sensor_doubt(Timestamp now) const;
+  [[nodiscard]] SensorDoubt sensor_doubt(std::uint32_t scan) const;
   void tell_of_ground(bool is_new);
 
   localization::Localizer localizer_;

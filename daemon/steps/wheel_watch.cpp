@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/steps/wheel_watch.hpp"
 
-#include <algorithm>
 #include <string>
 
 namespace deltamap::daemon {
@@ -10,12 +9,13 @@ namespace {
 // Recorded drives contradict their wheels in 1 to 2 % of the scans, those with turned or mirrored headings in 30 to 50
 // %.
 constexpr double kContradict = 0.25;
-constexpr std::size_t kFewestScans = 100;
+constexpr std::uint32_t kFewestScans = 100;
+constexpr double kWindow_s = 120.0;
 constexpr double kShortest_s = 60.0;  // nobody carries a robot for so long
 
 // Of a pose that has never changed each contradiction counts: a robot that stands has none.
 constexpr double kContradictStanding = 0.1;
-constexpr std::size_t kFewestStanding = 20;  // contradictions
+constexpr int kFewestStanding = 10;  // seconds with a contradiction
 
 }  // namespace
 
@@ -26,27 +26,40 @@ void WheelWatch::observe(const Odometry& odometry) {
 
 LogLine WheelWatch::observe(const TrackedScan& tracked, std::uint64_t contradicted) {
   if (!first_pose_) return {};
-  if (!began_) began_ = tracked.scan.time;
-  watched_s_ = seconds(tracked.scan.time - *began_);
   const bool spins = tracked.stood_m > 0.0;  // known, and no fault of the settings
-  contradicted_[next_] = contradicted > before_ && !spins;
+  count(tracked.scan.time, contradicted > before_ && !spins);
   before_ = contradicted;
-  next_ = (next_ + 1) % kScans;
-  seen_ = std::min(seen_ + 1, kScans);
-  return judged(contradicted_.count());
+  return judged();
 }
 
-LogLine WheelWatch::judged(std::size_t count) {
-  const double share = static_cast<double>(count) / static_cast<double>(seen_);
+void WheelWatch::count(Timestamp time, bool contradicts) {
+  if (!seconds_.empty() && time < seconds_.back().began) seconds_.clear();  // the clock was set back
+  if (seconds_.empty() || seconds(time - seconds_.back().began) >= 1.0) seconds_.push_back({.began = time});
+  ++seconds_.back().scans;
+  seconds_.back().contradicted += contradicts ? 1 : 0;
+  while (seconds(time - seconds_.front().began) > kWindow_s) seconds_.pop_front();
+}
+
+LogLine WheelWatch::judged() {
+  std::uint32_t seen = 0;
+  std::uint32_t count = 0;
+  int with_any = 0;
+  for (const Second& one : seconds_) {
+    seen += one.scans;
+    count += one.contradicted;
+    with_any += one.contradicted > 0 ? 1 : 0;
+  }
+  const double share = static_cast<double>(count) / static_cast<double>(seen);
   const double limit = has_moved_ ? kContradict : kContradictStanding;
   if (contradict_) {
     contradict_ = !has_moved_ || share >= limit / 2.0;
     return {contradict_ ? "" : "wheels and scans agree again"};
   }
-  const bool is_enough = has_moved_ ? seen_ >= kFewestScans && watched_s_ >= kShortest_s : count >= kFewestStanding;
+  const double watched_s = seconds(seconds_.back().began - seconds_.front().began);
+  const bool is_enough = has_moved_ ? seen >= kFewestScans && watched_s >= kShortest_s : with_any >= kFewestStanding;
   if (!is_enough || share < limit) return {};
   contradict_ = true;
-  const std::string scans = "in " + std::to_string(count) + " of the last " + std::to_string(seen_) + " scans";
+  const std::string scans = "in " + std::to_string(count) + " of the last " + std::to_string(seen) + " scans";
   if (!has_moved_) {
     return {"the robot's pose has never changed, and " + scans +
                 " it moves: check whether the controller, or the log, tells poses at all; the map is not written",

@@ -3,9 +3,8 @@
 // comes in other axes or units than believed. One that slips, spins or is carried contradicts its scans for seconds.
 #pragma once
 
-#include <bitset>
-#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "core/messages.hpp"
@@ -22,19 +21,20 @@ class WheelWatch {
   /// They contradict each other now.
   [[nodiscard]] bool contradict() const { return contradict_; }
 
-  static constexpr std::size_t kScans = 600;  ///< the last so many are looked at
-
  private:
-  [[nodiscard]] LogLine judged(std::size_t count);
+  /// What was seen in one second.
+  struct Second {
+    Timestamp began;
+    std::uint32_t scans = 0;
+    std::uint32_t contradicted = 0;
+  };
+  void count(Timestamp time, bool contradicts);
+  [[nodiscard]] LogLine judged();
 
   std::optional<Pose2> first_pose_;
   bool has_moved_ = false;
-  std::bitset<kScans> contradicted_;
-  std::size_t next_ = 0;
-  std::size_t seen_ = 0;
+  std::deque<Second> seconds_;  // of the last minutes
   std::uint64_t before_ = 0;
-  std::optional<Timestamp> began_;
-  double watched_s_ = 0.0;
   bool contradict_ = false;
 };
 

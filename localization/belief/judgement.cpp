@@ -51,7 +51,6 @@ void Judgement::start(double pose_right) {
   is_checked_ = false;
   fixed_by_surfaces_ = false;
   carried_.end();
-  known_ground_.start();
 }
 
 Belief Judgement::belief() const {

@@ -33,6 +33,9 @@ class Judgement {
   /// Begins anew at a pose that is right with this probability.
   void start(double pose_right);
 
+  /// A person has given the pose, or the whole map is searched for it.
+  void start_on_known_ground() { known_ground_.start(); }
+
   /// Every scan, first of all: has the robot come here from the last one as its wheels tell?
   void carry(const CarriedPose::Step& step) { carried_.observe(step); }
 

@@ -9,9 +9,10 @@ namespace deltamap::localization::belief {
 namespace {
 
 constexpr double kLeastBeams = 3.0;  // that fit, in each direction
-constexpr double kLeastShare = 0.6;  // of those that known ground expects
+constexpr double kLeastShare = 0.6;  // of those that reach what known ground expects
 constexpr double kLeftAfterM = 1.0;
 constexpr double kBackAfterM = 1.0;
+constexpr double kOutOfViewM = 10.0;  // nothing drawn is in view any more: whatever has changed, the pose rests on none
 
 /// What one side of the rim says about the pose, along the axes of the map that surfaces of it face most and least.
 struct Told {
@@ -19,6 +20,7 @@ struct Told {
   Eigen::Matrix2d all = Eigen::Matrix2d::Zero();
 
   void add(const CheckedBeam& beam) {
+    if (beam.what == BeamFit::kShort) return;  // what stands before it tells nothing of where it is
     const Eigen::Matrix2d moment = beam.normal * beam.normal.transpose();
     all += moment;
     if (beam.what == BeamFit::kFit) fit += moment;
@@ -48,10 +50,12 @@ void KnownGround::observe(std::span<const CheckedBeam> beams, const GridGeometry
     }
   }
   const bool holds = known.holds();
-  without_m_ = holds || drawn < kLeastBeams ? 0.0 : without_m_ + driven_m;
+  const bool rests_on_drawn = drawn >= kLeastBeams && drawn > known.fit.trace();
+  without_m_ = holds || !rests_on_drawn ? 0.0 : without_m_ + driven_m;
   held_m_ = holds ? held_m_ + driven_m : 0.0;
+  out_of_view_m_ = drawn < kLeastBeams ? out_of_view_m_ + driven_m : 0.0;
   if (without_m_ > kLeftAfterM) is_left_ = true;
-  if (held_m_ > kBackAfterM) is_left_ = false;
+  if (held_m_ > kBackAfterM || out_of_view_m_ > kOutOfViewM) is_left_ = false;
 }
 
 }  // namespace deltamap::localization::belief

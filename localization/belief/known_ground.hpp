@@ -19,7 +19,7 @@ class KnownGround {
   /// A scan that was held against the map, and the way since the one before.
   void observe(std::span<const CheckedBeam> beams, const GridGeometry& map, double driven_m);
   /// The pose was given or found: known ground has told of it.
-  void start() { is_left_ = false, without_m_ = held_m_ = 0.0; }
+  void start() { is_left_ = false, without_m_ = held_m_ = out_of_view_m_ = 0.0; }
 
   /// The pose rests on what this run has drawn where the map knew nothing.
   [[nodiscard]] bool is_left() const { return is_left_; }
@@ -27,8 +27,9 @@ class KnownGround {
  private:
   OccupancyGrid begun_with_;
   bool is_left_ = false;
-  double without_m_ = 0.0;  // driven since known ground has held the pose
-  double held_m_ = 0.0;     // driven while it does
+  double without_m_ = 0.0;      // driven since known ground has held the pose
+  double held_m_ = 0.0;         // driven while it does
+  double out_of_view_m_ = 0.0;  // driven while nothing that was drawn is in view
 };
 
 }  // namespace deltamap::localization::belief

@@ -13,7 +13,7 @@ LaserMotion ScanWitness::observe(const Scan& scan, std::span<const RayInRobot> r
     wheels.correct(scan.time, *seen.slip, {0.5 * seen.covariance.topLeftCorner<2, 2>().trace(), seen.covariance(2, 2)});
   }
   if (leads && last_ && seen.slip) wheels.led_by_scans(*last_, scan.time);
-  if (last_ && !seen.is_lost) lag_.observe(*last_, scan.time, seen.by_laser.theta, reports);
+  if (last_ && !seen.is_lost && !leads) lag_.observe(*last_, scan.time, seen.by_laser.theta, reports);
   last_ = scan.time;
   return seen;
 }

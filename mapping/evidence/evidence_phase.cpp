@@ -10,6 +10,13 @@
 namespace deltamap::mapping::evidence {
 namespace {
 
+constexpr std::uint32_t kFewestExpected = 3;  // beams that the map expects something of
+
+/// The pose says where the ground lies that was known before.
+bool tells_of_known_ground(const Belief& belief) {
+  return !belief.is_on_new_ground && belief.stable.expected + belief.elsewhere.expected >= kFewestExpected;
+}
+
 constexpr votes::Question kQuestions[] = {votes::Question::kAdded, votes::Question::kRemoved};
 
 void sort_unique(std::vector<std::uint32_t>& indices) {
@@ -67,20 +74,21 @@ void EvidencePhase::count_beams() {
 
 /// A pose that rests on what this run has drawn may have drifted away from the ground that was known before.
 void EvidencePhase::leave_out_known_ground(votes::Votes& votes) const {
-  const auto was_known = [this](std::uint32_t index) {
+  const auto is_known = [this](std::uint32_t index) {
     const CellBox cells = layer_.cells_of(layer_.blocks().cell_of(index));
     for (int row = cells.first.row; row < cells.last.row; ++row) {
       for (int column = cells.first.column; column < cells.last.column; ++column) {
-        const Point2 at = map_->geometry().centre_of({column, row});
-        if (begun_with_->at(begun_with_->geometry().cell_at(at)) != CellState::kUnknown) return true;
+        if (was_known({column, row})) return true;
       }
     }
     return false;
   };
-  for (const auto i : {0, 1}) {
-    std::erase_if(votes.yes[i], was_known);
-    std::erase_if(votes.no[i], was_known);
-  }
+  for (votes::Blocks* blocks : {&votes.yes[0], &votes.yes[1], &votes.no[0], &votes.no[1], &votes.ends, &votes.all})
+    std::erase_if(*blocks, is_known);
+}
+
+bool EvidencePhase::was_known(Cell cell) const {
+  return begun_with_->at(begun_with_->geometry().cell_at(map_->geometry().centre_of(cell))) != CellState::kUnknown;
 }
 
 void EvidencePhase::cast(const votes::Votes& votes) {
@@ -147,6 +155,7 @@ void EvidencePhase::begin_anew(votes::Question question, Cell block) {
 }
 
 std::optional<ScanSet> EvidencePhase::with_scans(ScanSet set, const votes::Blocks& blocks, std::uint32_t first_ms) {
+  if (leaves_known_ground_) std::erase_if(set.verdicts, [this](const CellVerdict& v) { return was_known(v.cell); });
   if (set.verdicts.empty()) return std::nullopt;
   set.phase = phase_ + 1;
   set.began = set.ended - std::chrono::milliseconds{now_ms_ - first_ms};  // holds where the count has wrapped
@@ -284,9 +293,10 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   count_beams();
   const std::vector<Cell> gone = small_objects_.missed(tracked, beams_, params_.beams);
   votes::Votes votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, tracked.scan.bearing_step_rad);
-  if (estimate.belief.is_on_new_ground) leave_out_known_ground(votes);
-  cast(votes);
   transients_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
+  leaves_known_ground_ = !tells_of_known_ground(estimate.belief);
+  if (leaves_known_ground_) leave_out_known_ground(votes);
+  cast(votes);
   keyframes_.keep(tracked, votes.all);
   redraw_queue_.see(votes.ends);
   std::optional<ScanSet> set = waiting_.empty() ? std::nullopt : settled_regions(tracked.scan.time);

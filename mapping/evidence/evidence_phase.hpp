@@ -71,6 +71,8 @@ class EvidencePhase {
   void count_beams();
   [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;
   void leave_out_known_ground(votes::Votes& votes) const;
+  /// At the begin of the run.
+  [[nodiscard]] bool was_known(Cell cell) const;
   void cast(const votes::Votes& votes);
   [[nodiscard]] bool is_proven(votes::Question question, Cell block) const;
   [[nodiscard]] std::optional<ScanSet> settled_regions(Timestamp time);
@@ -88,6 +90,7 @@ class EvidencePhase {
   EvidencePhaseParams params_;
   std::shared_ptr<const OccupancyGrid> map_;
   std::shared_ptr<const OccupancyGrid> begun_with_;
+  bool leaves_known_ground_ = false;  // as it is: by the newest keyframe
   votes::VoteLayer layer_;
   TransientLayer transients_;
   scan_set::KeyframePool keyframes_;

@@ -52,14 +52,24 @@ TEST_F(OnTheWay, IsNotLeftWhereNothingWasDrawn) {
       << "much has changed, all of it known ground";
 }
 
-TEST_F(OnTheWay, IsLeftWhereKnownGroundHoldsThePoseInOneDirectionAlone) {
-  EXPECT_TRUE(left_after(facing(kDrawn, BeamFit::kFit, 10, 10) + facing(kKnown, BeamFit::kFit, 0, 20), 2.0));
+TEST_F(OnTheWay, IsLeftWhereKnownGroundHoldsThePoseInOneDirectionAloneAndLessThanWhatWasDrawn) {
+  const Beams wall = facing(kKnown, BeamFit::kFit, 0, 15);
+  EXPECT_FALSE(left_after(facing(kDrawn, BeamFit::kFit, 2, 2) + wall, 5.0)) << "a corridor with a patch behind a door";
+  EXPECT_TRUE(left_after(facing(kDrawn, BeamFit::kFit, 10, 10) + wall, 2.0));
+}
+
+/// A hall in which most has changed would never hold the pose again.
+TEST_F(OnTheWay, IsFoundAgainWhereNothingDrawnHasBeenInViewForLong) {
+  ASSERT_TRUE(left_after(facing(kDrawn, BeamFit::kFit, 10, 10), 2.0));
+  const Beams changed = facing(kKnown, BeamFit::kFit, 5, 5) + facing(kKnown, BeamFit::kBeyond, 20, 20);
+  EXPECT_TRUE(left_after(changed, 9.0));
+  EXPECT_FALSE(left_after(changed, 2.0));
 }
 
 TEST_F(OnTheWay, IsFoundAgainOnceKnownGroundHoldsThePoseForAMetre) {
   ASSERT_TRUE(left_after(facing(kDrawn, BeamFit::kFit, 10, 10), 2.0));
   const Beams drawn = facing(kDrawn, BeamFit::kFit, 10, 10);
-  EXPECT_TRUE(left_after(drawn + facing(kKnown, BeamFit::kFit, 5, 5) + facing(kKnown, BeamFit::kShort, 8, 8), 5.0))
+  EXPECT_TRUE(left_after(drawn + facing(kKnown, BeamFit::kFit, 5, 5) + facing(kKnown, BeamFit::kBeyond, 8, 8), 5.0))
       << "most of it does not fit";
   EXPECT_TRUE(left_after(drawn + facing(kKnown, BeamFit::kFit, 5, 5), 0.8));
   EXPECT_FALSE(left_after(drawn + facing(kKnown, BeamFit::kFit, 5, 5), 0.8));
