@@ -121,12 +121,14 @@ Searched searched_by_halving(const HalvingParams& params, const CostsOf& costs_o
   Halving halving{params, costs_of};
   const std::size_t rounds = std::clamp<std::size_t>(params.budget / kBudgetOfARound, 1, kRounds);
   double width = 1.0;
-  for (std::size_t round = 0; round < rounds; ++round, width *= 0.5) {
-    const std::size_t budget = (params.budget - halving.runs()) / (rounds - round);
+  // What a round leaves over, since the next halving would have cost more, is spent on more rounds of the same kind.
+  for (std::size_t round = 0; round < 2 * rounds && params.budget >= halving.runs() + kLeastBudget; ++round) {
+    const std::size_t budget = (params.budget - halving.runs()) / (round < rounds ? rounds - round : 1);
     const std::size_t beginners = beginners_of(budget);
     std::vector<std::size_t> alive{halving.winner()};
     for (const std::size_t drawn : halving.draw_around_winner(beginners - 1, width)) alive.push_back(drawn);
     halving.halve(std::move(alive), budget);
+    if (round + 1 < rounds) width *= 0.5;
   }
   return std::move(halving).found();
 }

@@ -140,7 +140,7 @@ void optimize(const SweepOptions& options, const std::vector<Parameter>& paramet
   const Variant& winner = candidates.variants()[searched.winner];
   std::vector<std::string> words{found_words(searched, winner, parameters.size())};
   std::vector<Variant> compared{base};
-  if (searched.winner != 0) compared.push_back(winner);
+  if (searched.winner != 0) compared.push_back({"found", winner.values, winner.settings});
   const auto seeds = seeds_from(kFirstUnseenSeed, static_cast<int>(shares.seeds_to_confirm));
   std::vector<WantedRun> wanted = every_run(compared.size(), drives.size(), seeds);
   std::erase_if(wanted, [&](const WantedRun& run) { return run.drive < first_confirmed; });
