@@ -8,8 +8,9 @@
 namespace deltamap::localization::belief {
 namespace {
 
-constexpr double kLeastBeams = 3.0;  // that fit, in each direction
-constexpr double kLeastShare = 0.6;  // of those that reach what known ground expects
+constexpr double kLeastBeams = 3.0;   // that fit, in each direction
+constexpr double kLeastShare = 0.6;   // of those that reach what known ground expects
+constexpr double kDrawnShare = 0.25;  // of what known ground shows: less is a patch behind a door
 constexpr double kLeftAfterM = 1.0;
 constexpr double kBackAfterM = 1.0;
 constexpr double kOutOfViewM = 10.0;  // nothing drawn is in view any more: whatever has changed, the pose rests on none
@@ -50,7 +51,7 @@ void KnownGround::observe(std::span<const CheckedBeam> beams, const GridGeometry
     }
   }
   const bool holds = known.holds();
-  const bool rests_on_drawn = drawn >= kLeastBeams && drawn > known.fit.trace();
+  const bool rests_on_drawn = drawn >= kLeastBeams && drawn > kDrawnShare * known.fit.trace();
   without_m_ = holds || !rests_on_drawn ? 0.0 : without_m_ + driven_m;
   held_m_ = holds ? held_m_ + driven_m : 0.0;
   out_of_view_m_ = drawn < kLeastBeams ? out_of_view_m_ + driven_m : 0.0;

@@ -53,7 +53,7 @@ TEST_F(OnTheWay, IsNotLeftWhereNothingWasDrawn) {
 }
 
 TEST_F(OnTheWay, IsLeftWhereKnownGroundHoldsThePoseInOneDirectionAloneAndLessThanWhatWasDrawn) {
-  const Beams wall = facing(kKnown, BeamFit::kFit, 0, 15);
+  const Beams wall = facing(kKnown, BeamFit::kFit, 0, 30);
   EXPECT_FALSE(left_after(facing(kDrawn, BeamFit::kFit, 2, 2) + wall, 5.0)) << "a corridor with a patch behind a door";
   EXPECT_TRUE(left_after(facing(kDrawn, BeamFit::kFit, 10, 10) + wall, 2.0));
 }
