@@ -11,7 +11,7 @@ namespace deltamap::tool {
 /// A file that appears under its name only when it is whole.
 class Draft {
  public:
-  explicit Draft(std::filesystem::path file) : file_{std::move(file)}, draft_{file_.string() + ".part"} {}
+  explicit Draft(std::filesystem::path file) : file_{std::move(file)}, draft_{path_of(file_)} {}
   ~Draft() {
     std::error_code ignored;
     if (!kept_) std::filesystem::remove(draft_, ignored);
@@ -19,6 +19,10 @@ class Draft {
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
 
+  /// Where a file is written until it is whole.
+  [[nodiscard]] static std::filesystem::path path_of(const std::filesystem::path& file) {
+    return file.string() + ".part";
+  }
   [[nodiscard]] const std::filesystem::path& path() const { return draft_; }
   void keep() {
     std::error_code error;

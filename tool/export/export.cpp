@@ -109,9 +109,17 @@ void tell(const Exported& done, const ExportOptions& options) {
   std::cout << options.output << ": " << done.count << ' ' << done.what << '\n';
 }
 
+/// Neither the file nor its draft is what is read.
+void require_beside_what_is_read(const ExportOptions& options) {
+  for (const std::string& read : {options.source, options.recording}) {
+    require_output_beside(options.output, read);
+    require_output_beside(Draft::path_of(options.output), read);
+  }
+}
+
 /// Writes the file whole or not at all.
 void export_text(const ExportOptions& options, Exported (*write)(const ExportOptions&, std::ostream&)) {
-  require_output_beside(options.output, options.source);
+  require_beside_what_is_read(options);
   Draft draft{options.output};
   std::ofstream out{draft.path()};
   const Exported done = write(options, out);
@@ -122,7 +130,7 @@ void export_text(const ExportOptions& options, Exported (*write)(const ExportOpt
 }
 
 void export_as_mcap(const ExportOptions& options) {
-  require_output_beside(options.output, options.source);
+  require_beside_what_is_read(options);
   if (!options.recording.empty() && !options.is_run()) {
     throw CLI::ValidationError("--recording", options.source + " is no run's folder; --recording stands beside one");
   }

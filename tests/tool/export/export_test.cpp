@@ -228,5 +228,22 @@ TEST(Export, RefusesWhatCannotBe) {
   EXPECT_FALSE(std::filesystem::exists(folder + "/x.log")) << "nothing half-written";
 }
 
+TEST(Export, NeverTruncatesWhatItReads) {
+  const Recorded recorded;
+  const std::string folder = recorded.folder.path().string();
+  const std::string part = folder + "/b.part";
+  std::filesystem::copy_file(recorded.file, part);
+  const auto size = std::filesystem::file_size(part);
+  for (const char* format : {"tum", "csv", "carmen", "mcap"}) {
+    const auto run = run_deltamap({"export", format, part, folder + "/b"});
+    EXPECT_EQ(run.exit_code, 1) << format;
+    EXPECT_NE(run.errors.find("b.part: is what is read"), std::string::npos) << run.errors;
+    ASSERT_TRUE(std::filesystem::exists(part)) << format;
+    EXPECT_EQ(std::filesystem::file_size(part), size) << format;
+  }
+  const auto beside = run_deltamap({"export", "mcap", folder, recorded.file, "--recording", recorded.file});
+  EXPECT_NE(beside.errors.find("is what is read"), std::string::npos) << beside.errors;
+}
+
 }  // namespace
 }  // namespace deltamap::tool
