@@ -29,7 +29,7 @@ std::string name_among(const std::string& config, const std::vector<std::string>
 void run_compare(const CompareOptions& options) {
   if (options.configs.size() < 2) throw daemon::SettingsError("--config: give two or more, what is compared");
   tune::Drives drives = tune::drives_of(options.common);
-  const tune::Measure& measure = tune::deciding_measure(options.common, drives);
+  const tune::Measure& measure = tune::deciding_measure(options.common, drives, false);
   std::vector<tune::Variant> variants;
   for (const std::string& config : options.configs)
     variants.push_back(tune::variant_of(name_among(config, options.configs), config, {}, drives));

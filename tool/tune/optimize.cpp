@@ -126,13 +126,14 @@ void optimize(const SweepOptions& options, const std::vector<Parameter>& paramet
   const std::size_t searched_drives = drives.size() - options.held_out;
   const std::size_t first_confirmed = options.held_out > 0 ? searched_drives : 0;
   const BudgetShares shares = shares_of(options.budget, drives.size() - first_confirmed);
+  const auto is_interrupted = watch_for_interrupt();
   warn_of(drives, base);
   RunBook book{options.out, header_of(drives, base), options.anew};
   CandidateSettings candidates{options, parameters, drives, base};
   const auto costs_of = [&](const std::vector<Candidate>& drawn, const std::vector<Trial>& trials) {
     candidates.take(drawn);
     return costs_of_trials(trials, candidates, searched_drives, measure, [&](const std::vector<WantedRun>& wanted) {
-      return kept_results(wanted, candidates.variants(), drives, book, options);
+      return kept_results(wanted, candidates.variants(), drives, book, options, is_interrupted);
     });
   };
   const HalvingParams params{parameters.size(), shares.search, kMostBlocks, options.search_seed};
@@ -144,7 +145,7 @@ void optimize(const SweepOptions& options, const std::vector<Parameter>& paramet
   const auto seeds = seeds_from(kFirstUnseenSeed, static_cast<int>(shares.seeds_to_confirm));
   std::vector<WantedRun> wanted = every_run(compared.size(), drives.size(), seeds);
   std::erase_if(wanted, [&](const WantedRun& run) { return run.drive < first_confirmed; });
-  auto runs = kept_results(wanted, compared, drives, book, options);
+  auto runs = kept_results(wanted, compared, drives, book, options, is_interrupted);
   warn_of_foreign_maps(wanted, runs, drives);
   const TuningResult pairs{drives, std::move(compared), seeds, wanted, std::move(runs), measure};
   words.push_back(searched.winner == 0 ? "nothing better than the settings as given was found"

@@ -41,10 +41,12 @@ std::vector<Parameter> parameters_of(const std::vector<std::string>& texts) {
 std::vector<Variant> grid_of(const std::vector<Parameter>& parameters, const SweepOptions& options,
                              const Drives& drives) {
   std::size_t count = 1;
-  for (const Parameter& parameter : parameters) count *= parameter.values.size();
-  if (count > kMostSettings) {
-    throw daemon::SettingsError("--param: that are " + std::to_string(count) + " settings; at most " +
-                                std::to_string(kMostSettings) + ", or search them with --optimize");
+  for (const Parameter& parameter : parameters) {
+    if (parameter.values.size() > kMostSettings / count) {
+      throw daemon::SettingsError("--param: that are more than " + std::to_string(kMostSettings) +
+                                  " settings; give fewer values, or search them with --optimize");
+    }
+    count *= parameter.values.size();
   }
   std::vector<Variant> variants;
   for (std::size_t i = 0; i < count; ++i) {
@@ -74,7 +76,7 @@ void tell(const tune::TuningResult& result, const tune::Ranking& ranking, bool a
 void run_sweep(const SweepOptions& options) {
   const std::vector<Parameter> parameters = parameters_of(options.params);
   Drives drives = tune::drives_of(options.common);
-  const tune::Measure& measure = tune::deciding_measure(options.common, drives);
+  const tune::Measure& measure = tune::deciding_measure(options.common, drives, options.budget > 0);
   const Variant base = tune::variant_of("as given", options.common.config, {}, drives);
   if (options.budget > 0) return tune::optimize(options, parameters, drives, base, measure);
   std::vector<Variant> variants = grid_of(parameters, options, drives);
@@ -82,7 +84,7 @@ void run_sweep(const SweepOptions& options) {
   tune::RunBook book{options.out, tune::header_of(drives, base), options.anew};
   const auto seeds = tune::seeds_from(1, options.common.seeds);
   const auto wanted = tune::every_run(variants.size(), drives.size(), seeds);
-  auto runs = tune::kept_results(wanted, variants, drives, book, options);
+  auto runs = tune::kept_results(wanted, variants, drives, book, options, tune::watch_for_interrupt());
   tune::warn_of_foreign_maps(wanted, runs, drives);
   const tune::TuningResult result{drives, std::move(variants), seeds, wanted, std::move(runs), measure};
   const tune::Ranking ranking = result.ranking();

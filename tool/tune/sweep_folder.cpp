@@ -26,8 +26,8 @@ std::string header_of(const Drives& drives, const Variant& base) {
 }
 
 std::vector<MeasuredRun> kept_results(const std::vector<WantedRun>& wanted, const std::vector<Variant>& variants,
-                                      Drives& drives, RunBook& book, const SweepOptions& options) {
-  const auto is_interrupted = watch_for_interrupt();
+                                      Drives& drives, RunBook& book, const SweepOptions& options,
+                                      const std::function<bool()>& is_interrupted) {
   try {
     return results_of(wanted, variants, drives, &book,
                       {jobs_of(options.common), false, options.budget > 0, is_interrupted});

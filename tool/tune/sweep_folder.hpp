@@ -25,9 +25,10 @@ struct SweepOptions {
 /// are not tried.
 [[nodiscard]] std::string header_of(const Drives& drives, const Variant& base);
 
-/// As results_of(); where a person ends it, the error tells how to go on.
+/// As results_of(); where a person ends it, the error tells how to go on. `is_interrupted`: of watch_for_interrupt().
 [[nodiscard]] std::vector<MeasuredRun> kept_results(const std::vector<WantedRun>& wanted,
                                                     const std::vector<Variant>& variants, Drives& drives, RunBook& book,
-                                                    const SweepOptions& options);
+                                                    const SweepOptions& options,
+                                                    const std::function<bool()>& is_interrupted);
 
 }  // namespace deltamap::tool::tune

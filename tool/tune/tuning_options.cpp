@@ -62,6 +62,15 @@ std::string name_of(const std::string& recording, std::set<std::string>& taken) 
   return name;
 }
 
+/// Why no run of a recording with this true way gives the measure; empty: all do.
+std::string why_not_given(TrueWay::Kind kind, std::string_view measure) {
+  using Kind = TrueWay::Kind;
+  const bool is_of_poses = measure.starts_with("error_") || measure == "heading_median_deg" || measure == "lost_share";
+  if (is_of_poses && kind != Kind::kReference && kind != Kind::kSimulation) return "needs --reference or --truth";
+  if (measure.starts_with("relation_") && kind != Kind::kRelations) return "needs --relations";
+  return measure == "repeatability_m" ? "is of several runs at once: `deltamap score` alone tells it" : "";
+}
+
 }  // namespace
 
 TrueWay true_way_of(const TuningOptions& options, std::size_t drive) {
@@ -147,8 +156,17 @@ int jobs_of(const TuningOptions& options) {
   return options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
-const Measure& deciding_measure(const TuningOptions& options, const Drives& drives) {
-  if (!options.by.empty()) return measure_named(options.by);
+const Measure& deciding_measure(const TuningOptions& options, const Drives& drives, bool needs_all) {
+  if (!options.by.empty()) {
+    const Measure& asked = measure_named(options.by);
+    const auto has_it = [&](const auto& drive) { return why_not_given(drive->files().way.kind, asked.name).empty(); };
+    const auto count = static_cast<std::size_t>(std::count_if(drives.begin(), drives.end(), has_it));
+    if (count > 0 && (count == drives.size() || !needs_all)) return asked;
+    const auto without = std::find_if_not(drives.begin(), drives.end(), has_it);
+    throw daemon::SettingsError(
+        "--by " + options.by + ": " + why_not_given((*without)->files().way.kind, asked.name) +
+        (count > 0 ? " for every recording, and " + (*without)->files().name + " has none" : ""));
+  }
   const auto all_have = [&](auto... kinds) {
     return std::all_of(drives.begin(), drives.end(),
                        [&](const auto& drive) { return ((drive->files().way.kind == kinds) || ...); });

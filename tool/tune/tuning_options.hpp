@@ -56,10 +56,12 @@ void add_tuning_options(CLI::App& command, TuningOptions& options);
 /// 1, 2, …
 [[nodiscard]] std::vector<std::uint64_t> seeds_from(std::uint64_t first, int count);
 [[nodiscard]] int jobs_of(const TuningOptions& options);
-/// The measure that is asked for; else what the true ways allow: error_rmse_m, relation_m, or agreement.
-[[nodiscard]] const Measure& deciding_measure(const TuningOptions& options, const Drives& drives);
+/// The measure that is asked for; else what the true ways allow: error_rmse_m, relation_m, or agreement. Throws
+/// SettingsError where no recording's true way gives the one that is asked for; `needs_all`: where one does not.
+[[nodiscard]] const Measure& deciding_measure(const TuningOptions& options, const Drives& drives, bool needs_all);
 
-/// Since it was called first, has a person ended the program (Ctrl-C)?
+/// Once a command, before its first run: a signal from before is forgotten. Since then, has a person ended the program
+/// (Ctrl-C)?
 [[nodiscard]] std::function<bool()> watch_for_interrupt();
 
 /// What a person should know of the drives before all else, on standard error: what recordings lack, the mount.

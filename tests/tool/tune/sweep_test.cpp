@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +15,7 @@
 #include "tests/support/files/text_file.hpp"
 #include "tests/support/files/tool_run.hpp"
 #include "tests/support/scans/scripted_drive.hpp"
+#include "tool/tune/sweep_folder.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -172,6 +174,67 @@ TEST_F(SweepTest, NamesWhatIsMissing) {
   EXPECT_NE(other_truth.errors.find("is it of another recording?"), std::string::npos) << other_truth.errors;
   EXPECT_EQ(sweep({"--by", "error_rms_m"}).exit_code, 1);
   EXPECT_NE(sweep({"--by", "error_rms_m"}).errors.find("nearest error_rmse_m"), std::string::npos);
+}
+
+TEST_F(SweepTest, RefusesAMeasureThatNoRecordingGivesBeforeAnyRun) {
+  const auto expect_refused = [&](const Words& words, const std::string& what) {
+    const ToolRun refused = run_deltamap(words);
+    EXPECT_EQ(refused.exit_code, 2) << words[0] << refused.output;
+    EXPECT_NE(refused.errors.find(what), std::string::npos) << refused.errors;
+    EXPECT_FALSE(fs::exists(file("none"))) << words[0];
+  };
+  const Words drive{file("drive.pcapng"), "--map", file("room.yaml"), "--by"};
+  const auto with = [&](Words words, const std::string& by, const Words& more) {
+    words.insert(words.end(), drive.begin(), drive.end());
+    words.push_back(by);
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  const Words range{"--param", "localization.beams=20:60:2", "--out", file("none")};
+  const Words search{"--param", "localization.beams=20:60:9", "--out", file("none"), "--optimize", "30"};
+  const std::string config = folder_.write("a.yaml", "seed: 1\n").string();
+  for (const char* by : {"error_rmse_m", "lost_share"}) {
+    expect_refused(with({"sweep"}, by, range), "needs --reference or --truth");
+    expect_refused(with({"sweep"}, by, search), "needs --reference or --truth");
+    expect_refused(with({"compare"}, by, {"--config", config, "--config", config}), "needs --reference or --truth");
+  }
+  expect_refused(with({"sweep"}, "relation_deg", range), "needs --relations");
+  expect_refused(with({"sweep"}, "repeatability_m", search), "`deltamap score` alone");
+  Words half = with({"sweep", file("drive.pcapng")}, "error_rmse_m", search);
+  for (const std::string& way : {file("truth.txt"), std::string{"-"}}) half.insert(half.end(), {"--reference", way});
+  expect_refused(half, "every recording");
+}
+
+TEST_F(SweepTest, RefusesMoreCombinationsThanCanBeCounted) {
+  Words keys{"--out", file("none")};
+  for (const char* key :
+       {"motion.metre_per_metre", "motion.turn_per_turn", "motion.slip_probability", "motion.turn_per_metre_deg",
+        "wheels.learning_share", "field.random_share", "field.hit_deviation_m", "update.distance_m"}) {
+    std::string values;  // 256 for each of eight keys: 2^64, which is 0 in 64 bit
+    for (int i = 0; i < 256; ++i) values += (i == 0 ? "" : ",") + std::to_string(0.05 + 0.0001 * i);
+    keys.insert(keys.end(), {"--param", std::string{"localization."} + key + "=" + values});
+  }
+  const ToolRun refused = run("sweep", keys);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.errors.find("more than 10000"), std::string::npos) << refused.errors.substr(0, 300);
+}
+
+TEST_F(SweepTest, HeedsAnInterruptBetweenTwoBatches) {
+  tune::SweepOptions options;
+  options.common.recordings = {file("drive.pcapng")};
+  options.common.maps = {file("room.yaml")};
+  options.out = file("sweep");
+  tune::Drives drives = tune::drives_of(options.common);
+  const std::vector<tune::Variant> as_given{tune::variant_of("as given", "", {}, drives)};
+  tune::RunBook book{options.out, tune::header_of(drives, as_given.front()), false};
+  const auto is_interrupted = tune::watch_for_interrupt();
+  const auto batch = [&](std::uint64_t seed) {
+    return tune::kept_results({{0, 0, seed}}, as_given, drives, book, options, is_interrupted);
+  };
+  EXPECT_EQ(batch(1).size(), 1u);
+  (void)std::raise(SIGINT);
+  EXPECT_THROW((void)batch(2), std::runtime_error);
+  EXPECT_EQ(book.size(), 1u);
 }
 
 TEST_F(SweepTest, SuspectsAMapOfAnotherSite) {
