@@ -36,8 +36,12 @@ Told told_by(const fs::path& report_file) {
   }
   std::vector<std::string> overrides;
   const FolderJson changed = report.value("settings", FolderJson::object()).value("changed", FolderJson::object());
-  for (const auto& [key, value] : changed.items())
-    overrides.push_back(key + "=" + (value.is_string() ? "\"" + value.get<std::string>() + "\"" : value.dump()));
+  daemon::Settings as_delivered;
+  const std::vector<daemon::SettingKey> keys = daemon::keys_of(as_delivered);
+  for (const auto& [key, value] : changed.items()) {  // what this version does not know is left out
+    const auto is_it = [&name = key](const daemon::SettingKey& known) { return known.name == name; };
+    if (std::any_of(keys.begin(), keys.end(), is_it)) overrides.push_back(key + "=" + value.dump());
+  }
   const FolderJson recording = report.value("recording", FolderJson::object());
   const std::string file = recording.is_object() ? recording.value("file", std::string{}) : std::string{};
   return {daemon::parse_settings("", report_file.string(), overrides), file};

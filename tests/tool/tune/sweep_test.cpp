@@ -219,6 +219,18 @@ TEST_F(SweepTest, RefusesMoreCombinationsThanCanBeCounted) {
   EXPECT_NE(refused.errors.find("more than 10000"), std::string::npos) << refused.errors.substr(0, 300);
 }
 
+TEST_F(SweepTest, ScoresAFolderWithKeysThatAreUnknownAndTextsThatNeedQuotes) {
+  const ToolRun replayed =
+      run_deltamap({"replay", file("drive.pcapng"), "--map", file("room.yaml"), "--out", file("run")});
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.errors;
+  Json report = Json::parse(content_of(file("run/report.json")));
+  report["settings"]["changed"]["localization.of_another_version"] = 3;
+  report["settings"]["changed"]["recording.file"] = "a \"quoted\" name.pcapng";
+  (void)folder_.write("run/report.json", report.dump());
+  const ToolRun scored = run_deltamap({"score", file("run"), "--json"});
+  EXPECT_EQ(scored.exit_code, 0) << scored.errors;
+}
+
 TEST_F(SweepTest, HeedsAnInterruptBetweenTwoBatches) {
   tune::SweepOptions options;
   options.common.recordings = {file("drive.pcapng")};
