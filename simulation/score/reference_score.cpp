@@ -16,6 +16,9 @@ namespace {
 
 constexpr double kMatchS = 0.05;  // between an estimate and its reference
 constexpr double kLostM = 0.5;
+// Of the time between two estimates: as far one of them speaks for a denser reference. More than half, for intervals
+// differ; less than one, for where an estimate is missing its neighbours do not stand in.
+constexpr double kReachOfInterval = 0.75;
 
 std::vector<double> numbers_in(const std::string& line) {
   std::istringstream fields(line);
@@ -33,11 +36,11 @@ std::optional<StampedPose> pose_of(const std::vector<double>& n) {
 
 bool is_earlier(const StampedPose& a, const StampedPose& b) { return a.time < b.time; }
 
-/// Index of the nearest in time; nothing where none lies within kMatchS.
-std::optional<std::size_t> match_of(const std::vector<StampedPose>& reference, Timestamp time) {
+/// Index of the nearest in time; nothing where none lies within the reach.
+std::optional<std::size_t> match_of(const std::vector<StampedPose>& reference, Timestamp time, double reach_s) {
   const auto after = std::lower_bound(reference.begin(), reference.end(), StampedPose{time, {}}, is_earlier);
   std::optional<std::size_t> nearest;
-  double least_s = kMatchS;
+  double least_s = reach_s;
   const auto look_at = [&](std::vector<StampedPose>::const_iterator one) {
     const double away_s = std::abs(seconds(one->time - time));
     if (away_s > least_s) return;
@@ -47,6 +50,27 @@ std::optional<std::size_t> match_of(const std::vector<StampedPose>& reference, T
   if (after != reference.begin()) look_at(after - 1);
   if (after != reference.end()) look_at(after);
   return nearest;
+}
+
+/// How far an estimate speaks for the reference around it.
+double reach_of(const std::vector<StampedPose>& estimates) {
+  std::vector<double> intervals_s;
+  for (std::size_t i = 1; i < estimates.size(); ++i)
+    intervals_s.push_back(seconds(estimates[i].time - estimates[i - 1].time));
+  return intervals_s.empty() ? kMatchS : std::max(kMatchS, kReachOfInterval * deltamap::quantile(intervals_s, 0.5));
+}
+
+/// For each pose of the reference the error of the estimate that speaks for it. `errors_m`: of each estimate.
+std::vector<std::optional<double>> errors_along(const std::vector<StampedPose>& reference,
+                                                const std::vector<StampedPose>& estimates,
+                                                const std::vector<std::optional<double>>& errors_m) {
+  const double reach_s = reach_of(estimates);
+  std::vector<std::optional<double>> along;
+  for (const StampedPose& pose : reference) {
+    const auto nearest = match_of(estimates, pose.time, reach_s);
+    along.push_back(nearest ? errors_m[*nearest] : std::nullopt);
+  }
+  return along;
 }
 
 }  // namespace
@@ -86,17 +110,19 @@ std::vector<StampedPose> reference_at(const std::vector<StampedPose>& trajectory
   return reference;
 }
 
-ReferenceScore reference_score(const std::vector<StampedPose>& trajectory, const std::vector<StampedPose>& reference) {
+ReferenceScore reference_score(std::vector<StampedPose> trajectory, const std::vector<StampedPose>& reference) {
+  std::stable_sort(trajectory.begin(), trajectory.end(), is_earlier);
   std::vector<double> errors_m;
   std::vector<double> turns_rad;
-  std::vector<std::optional<double>> at(reference.size());
+  std::vector<std::optional<double>> of_each;
   for (const StampedPose& pose : trajectory) {
-    const auto match = match_of(reference, pose.time);
+    const auto match = match_of(reference, pose.time, kMatchS);
+    of_each.emplace_back();
     if (!match) continue;
     const Pose2& truth = reference[*match].map_from_robot;
     errors_m.push_back(deltamap::distance_between(pose.map_from_robot, truth));
     turns_rad.push_back(std::abs(turn_between(truth.theta, pose.map_from_robot.theta)));
-    at[*match] = errors_m.back();
+    of_each.back() = errors_m.back();
   }
   ReferenceScore score{.matched = errors_m.size(), .of = reference.size()};
   if (errors_m.empty()) return score;
@@ -106,6 +132,7 @@ ReferenceScore reference_score(const std::vector<StampedPose>& trajectory, const
   score.max_m = *std::max_element(errors_m.begin(), errors_m.end());
   score.median_heading_rad = deltamap::quantile(turns_rad, 0.5);
   score.p95_heading_rad = deltamap::quantile(turns_rad, 0.95);
+  const auto at = errors_along(reference, trajectory, of_each);
   const auto count = static_cast<double>(reference.size());
   score.coverage = static_cast<double>(std::count_if(at.begin(), at.end(), [](const auto& e) { return !!e; })) / count;
   std::optional<Timestamp> lost_since;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far a trajectory is from reference poses in the map's own frame: no alignment, for a localizer must be right
-// there. A pose of the reference that got no estimate counts as lost.
+// there. A pose of the reference that got no estimate counts as lost; in a reference that is denser than the estimates
+// each speaks for what lies around it.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +38,7 @@ struct ReferenceScore {
 };
 
 /// Both of the same thing, in one frame; the reference in order of time.
-[[nodiscard]] ReferenceScore reference_score(const std::vector<StampedPose>& trajectory,
+[[nodiscard]] ReferenceScore reference_score(std::vector<StampedPose> trajectory,
                                              const std::vector<StampedPose>& reference);
 
 }  // namespace deltamap::simulation::score

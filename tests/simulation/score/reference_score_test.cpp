@@ -32,6 +32,22 @@ TEST(ReferenceScore, TakesErrorsOfMatchedPosesAndCountsMissingOnesAsLost) {
   EXPECT_DOUBLE_EQ(score.longest_lost_s, 2.0);
 }
 
+TEST(ReferenceScore, LosesNothingWhereTheReferenceIsDenserThanTheScans) {
+  std::vector<StampedPose> reference;
+  for (int i = 0; i <= 400; ++i) reference.push_back(at(0.01 * i, 0.004 * i));
+  std::vector<StampedPose> scans;
+  for (int i = 0; i <= 20; ++i) scans.push_back(at(0.2 * i, 0.08 * i));
+  const ReferenceScore perfect = reference_score(scans, reference);
+  EXPECT_DOUBLE_EQ(perfect.coverage, 1.0);
+  EXPECT_DOUBLE_EQ(perfect.lost_share, 0.0);
+  EXPECT_DOUBLE_EQ(perfect.longest_lost_s, 0.0);
+  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].map_from_robot.y = i < 10 ? 1.0 : 0.0;
+  EXPECT_NEAR(reference_score(scans, reference).lost_share, 0.475, 0.01) << "up to the middle of two scans";
+  scans.erase(scans.begin() + 5, scans.begin() + 15);
+  const ReferenceScore cut = reference_score(scans, reference);
+  EXPECT_NEAR(cut.coverage, 1.0 - (2.2 - 2 * 0.15) / 4.0, 0.01) << "where scans are missing there is no estimate";
+}
+
 TEST(ReferenceScore, IsOfNoPoseWhereTheTimesDoNotMeet) {
   EXPECT_EQ(reference_score({at(100, 0)}, {at(0, 0)}).matched, 0u);
 }
