@@ -124,8 +124,12 @@ void decode_hex(const DecodeOptions& options) {
   }
 }
 
-void decode(DecodeOptions& options) {
+void decode(DecodeOptions& options, const CLI::App& command) {
   if (options.is_line()) {
+    for (const char* of_recording : {"--kind", "--from", "--to"}) {
+      if (command.count(of_recording) > 0)
+        throw CLI::ValidationError(of_recording, "is of a recording: bytes of a line have neither times nor kinds");
+    }
     if (options.hex.empty()) throw CLI::ValidationError("HEX", "bytes of the line are missing");
     return decode_hex(options);
   }
@@ -160,7 +164,7 @@ void add_decode(CLI::App& app) {
                    "recording: only frames of this name (scan, SIP, VEL, note, garbage, ...); repeatable")
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "print JSON; of a recording a line each");
-  command->callback([options] { decode(*options); });
+  command->callback([options, command] { decode(*options, *command); });
 }
 
 }  // namespace deltamap::tool

@@ -79,7 +79,7 @@ void add_replay(CLI::App& app) {
   command->add_option("--map", options->job.map, "M_0, map_server YAML; required, as is --out, but with --to-pty");
   command->add_option("--config", options->config, "settings, YAML; as delivered where it is not given");
   command->add_option("--out", options->job.out, "folder for trajectory.tum, map, changes.jsonl, report.json");
-  command->add_option(
+  CLI::Option* const to_pty = command->add_option(
       "--to-pty", options->to_pty,
       "play the recorded devices in real time on two pseudo-terminals, linked as robot and laser in this "
       "folder, and tell where their client says something else than was recorded");
@@ -96,6 +96,9 @@ void add_replay(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--set", options->overrides, "key=value over the settings; repeatable")->allow_extra_args(false);
   command->add_flag("--json", options->as_json, "print the report as JSON");
+  for (const char* unheeded :
+       {"--map", "--config", "--out", "--seed", "--initial-pose", "--map-delay", "--set", "--json"})
+    to_pty->excludes(command->get_option(unheeded));
   command->callback([options] { replay_or_play(*options); });
 }
 

@@ -153,6 +153,14 @@ TEST(Decode, RefusesWhatIsNoHexAndLinesThatDoNotExist) {
   EXPECT_EQ(run({"robot"}).exit_code, 2);
 }
 
+TEST(Decode, RefusesWhatIsOfARecordingBesideBytes) {
+  for (const char* option : {"--kind", "--from", "--to"}) {
+    const auto run = run_deltamap({"decode", "robot", "fafb0300000000", option, option[2] == 'k' ? "SIP" : "1"});
+    EXPECT_EQ(run.exit_code, 2) << option;
+    EXPECT_NE(run.errors.find(option), std::string::npos) << run.errors;
+  }
+}
+
 TEST(Decode, DecodesEveryGoldenFrameWhole) {
   DELTAMAP_GOLDEN_VECTORS_OR_SKIP(golden);
   for (const char* list : {"arcos_commands", "arcos_sips", "arcos_replies_captured"}) {

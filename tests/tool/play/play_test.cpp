@@ -113,5 +113,22 @@ TEST(Replay, WantsMapAndFolderUnlessItPlaysTheDevices) {
   EXPECT_EQ(test::run_deltamap({"replay", "/nowhere.pcapng", "--to-pty", "ports"}).exit_code, 1);
 }
 
+TEST(Replay, RefusesWhatPlayingTheDevicesDoesNotHeed) {
+  for (const std::vector<std::string>& unheeded : {std::vector<std::string>{"--map", "m.yaml"},
+                                                   {"--out", "out"},
+                                                   {"--config", "c.yaml"},
+                                                   {"--seed", "1"},
+                                                   {"--initial-pose", "0,0,0"},
+                                                   {"--map-delay", "1"},
+                                                   {"--set", "seed=1"},
+                                                   {"--json"}}) {
+    std::vector<std::string> words{"replay", "/nowhere.pcapng", "--to-pty", "ports"};
+    words.insert(words.end(), unheeded.begin(), unheeded.end());
+    const auto run = test::run_deltamap(words);
+    EXPECT_EQ(run.exit_code, 2) << unheeded.front();
+    EXPECT_NE(run.errors.find(unheeded.front()), std::string::npos) << run.errors;
+  }
+}
+
 }  // namespace
 }  // namespace deltamap::tool
