@@ -31,10 +31,9 @@ RecordingSurvey shown_survey_of(const std::string& file) {
 }
 
 /// By these settings and this map, as a replay would judge.
-RepeatAnswer repeat_with(const RecordingSurvey& survey, const InfoOptions& options) {
+RepeatAnswer repeat_with(const RecordingSurvey& survey, const InfoOptions& options, const daemon::Settings& settings) {
   RepeatAnswer answer = repeat_answer(survey);
   if (!answer.can) return answer;
-  const daemon::Settings settings = daemon::settings_or_defaults(options.config, options.overrides);
   const bool has_settings = !options.config.empty() || !options.overrides.empty();
   if (options.map.empty()) {
     if (!has_settings) return answer;
@@ -50,12 +49,13 @@ RepeatAnswer repeat_with(const RecordingSurvey& survey, const InfoOptions& optio
 }
 
 void print_info(const InfoOptions& options) {
+  const daemon::Settings settings = daemon::settings_or_defaults(options.config, options.overrides);
   std::string failures;
   std::string json;
   for (const std::string& file : options.recordings) {
     try {
       const RecordingSurvey survey = shown_survey_of(file);
-      const RepeatAnswer repeat = repeat_with(survey, options);
+      const RepeatAnswer repeat = repeat_with(survey, options, settings);
       if (options.as_json)
         json += (json.empty() ? "" : ",\n") + info_json(survey, repeat);
       else

@@ -2,6 +2,7 @@
 // `deltamap info`, run in-process on recordings that are written here.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "daemon/records/journal.hpp"
@@ -166,6 +167,17 @@ TEST(Info, TellsTheOthersWhereOneRecordingCannotBeRead) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.output.find(file), std::string::npos);
   EXPECT_NE(run.errors.find("/nowhere.pcapng"), std::string::npos) << run.errors;
+}
+
+TEST(Info, RefusesSettingsThatCannotBeBeforeItReadsAnything) {
+  WrittenRecording recording;
+  begin_run(recording, recorded_settings({}));
+  drive(recording, 0.0, 1.0);
+  const std::string file = recording.closed();
+  const auto run = run_deltamap({"info", file, file, "--set", "localization.beems=1"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.output, "");
+  EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << "once: " << run.errors;
 }
 
 TEST(Rhythm, CountsWhatALongIntervalLacks) {
