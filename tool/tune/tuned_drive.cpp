@@ -67,6 +67,11 @@ void TunedDrive::forget_decoded() {
   decoded_.clear();
 }
 
+bool TunedDrive::is_decoded() const {
+  const std::lock_guard lock{decoding_};
+  return !decoded_.empty();
+}
+
 std::vector<std::pair<std::string, double>> TunedDrive::errors_of(const std::vector<StampedPose>& trajectory,
                                                                   const daemon::Settings& settings) const {
   std::vector<std::pair<std::string, double>> numbers;

@@ -48,6 +48,7 @@ class TunedDrive {
   [[nodiscard]] std::shared_ptr<const daemon::RecordedDrive> decoded(const daemon::Settings& settings);
   /// What was decoded is no longer kept.
   void forget_decoded();
+  [[nodiscard]] bool is_decoded() const;
 
   /// Adds what the way of a run is worth to numbers. `settings`: those of the run. Throws std::runtime_error where the
   /// times of the reference do not meet those of the recording.
@@ -63,7 +64,7 @@ class TunedDrive {
   std::vector<StampedPose> reference_;
   std::vector<simulation::score::Relation> relations_;
   simulation::Truth truth_;
-  std::mutex decoding_;
+  mutable std::mutex decoding_;
   std::map<std::string, std::shared_ptr<const daemon::RecordedDrive>> decoded_;  // by decoding_settings()
 };
 

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/work_pool.hpp"
 #include "daemon/settings/fingerprint.hpp"
@@ -44,10 +46,16 @@ class SharedProgress {
 /// Runs of one drive follow each other, so that no more drives are in memory than are at work; long drives first, so
 /// that no thread is left alone with one at the end.
 std::vector<std::size_t> order_of(const std::vector<std::size_t>& missing, const std::vector<WantedRun>& wanted,
-                                  const std::vector<std::size_t>& scans) {
+                                  const Drives& drives) {
+  std::vector<std::uintmax_t> sizes;
+  for (const auto& drive : drives) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(drive->files().recording, error);
+    sizes.push_back(error ? 0 : size);  // whoever reads it tells why
+  }
   std::vector<std::size_t> order = missing;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const auto rank = [&](std::size_t i) { return std::pair{scans[wanted[i].drive], wanted[i].drive}; };
+    const auto rank = [&](std::size_t i) { return std::pair{sizes[wanted[i].drive], wanted[i].drive}; };
     return rank(a) > rank(b);
   });
   return order;
@@ -74,7 +82,6 @@ std::vector<MeasuredRun> results_of(const std::vector<WantedRun>& wanted, const 
   std::vector<MeasuredRun> results(wanted.size());
   std::vector<std::size_t> missing;
   std::vector<std::size_t> left(drives.size());
-  std::vector<std::size_t> scans(drives.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     auto done = book == nullptr ? std::nullopt : book->run(key_of(wanted[i], variants, drives));
     if (done) {
@@ -82,10 +89,9 @@ std::vector<MeasuredRun> results_of(const std::vector<WantedRun>& wanted, const 
       continue;
     }
     missing.push_back(i);
-    if (left[wanted[i].drive]++ > 0) continue;
-    scans[wanted[i].drive] = drives[wanted[i].drive]->decoded(settings_of(wanted[i], variants))->scans;
+    ++left[wanted[i].drive];
   }
-  const std::vector<std::size_t> order = order_of(missing, wanted, scans);
+  const std::vector<std::size_t> order = order_of(missing, wanted, drives);
   SharedProgress progress{order.size()};
   const auto work = [&](std::size_t i) {
     const WantedRun& run = wanted[order[i]];

@@ -249,6 +249,28 @@ TEST_F(SweepTest, HeedsAnInterruptBetweenTwoBatches) {
   EXPECT_EQ(book.size(), 1u);
 }
 
+TEST_F(SweepTest, KeepsNoMoreRecordingsInMemoryThanAreAtWork) {
+  fs::copy_file(file("drive.pcapng"), file("other.pcapng"));
+  tune::TuningOptions options;
+  options.recordings = {file("drive.pcapng"), file("other.pcapng")};
+  options.maps = {file("room.yaml")};
+  tune::Drives drives = tune::drives_of(options);
+  const std::vector<tune::Variant> as_given{tune::variant_of("as given", "", {}, drives)};
+  const auto decoded = [&] {
+    return std::count_if(drives.begin(), drives.end(), [](const auto& drive) { return drive->is_decoded(); });
+  };
+  tune::warn_of(drives, as_given.front());
+  EXPECT_LE(decoded(), 1);
+  std::ptrdiff_t most = 0;
+  const auto look = [&] {
+    most = std::max(most, decoded());
+    return false;
+  };
+  const auto runs = tune::results_of(tune::every_run(1, 2, {1, 2}), as_given, drives, nullptr, {1, false, false, look});
+  EXPECT_EQ(runs.size(), 4u);
+  EXPECT_EQ(most, 1);
+}
+
 TEST_F(SweepTest, SuspectsAMapOfAnotherSite) {
   OccupancyGrid other{{200, 160, 0.05, {0.0, 0.0}}, CellState::kFree};
   for (int column = 100; column < 200; ++column) {
