@@ -51,11 +51,15 @@ ResultJson json_of_runs(const TuningResult& result) {
   return runs;
 }
 
-ResultJson json_of_means(const TuningResult& result, std::size_t variant) {
-  ResultJson means = ResultJson::object();
+/// Of each variant the mean of every measure.
+std::vector<ResultJson> json_of_means(const TuningResult& result) {
+  std::vector<ResultJson> means(result.variants.size(), ResultJson::object());
   for (const Measure& measure : measures()) {
-    const double mean = mean_over_drives(result.values(measure.name)[variant]);
-    if (!std::isnan(mean)) means[std::string{measure.name}] = mean;
+    const MeasuredValues values = result.values(measure.name);
+    for (std::size_t variant = 0; variant < means.size(); ++variant) {
+      const double mean = mean_over_drives(values[variant]);
+      if (!std::isnan(mean)) means[variant][std::string{measure.name}] = mean;
+    }
   }
   return means;
 }
@@ -66,10 +70,6 @@ ResultJson head_of(const TuningResult& result) {
   for (const auto& drive : result.drives) json["recordings"].push_back(drive->files().name);
   json["seeds"] = result.seeds;
   return json;
-}
-
-std::string mean_cpu(const TuningResult& result, std::size_t variant) {
-  return digits_of(mean_over_drives(result.values("cpu_ms")[variant]));
 }
 
 }  // namespace
@@ -101,6 +101,7 @@ TextGrid sweep_table(const TuningResult& result, const Ranking& ranking) {
     if (has_several) grid.columns.push_back(drive->files().name);
   }
   for (const char* column : {"from the best", "cpu_ms", ""}) grid.columns.emplace_back(column);
+  const MeasuredValues cpu_ms = result.values("cpu_ms");
   for (std::size_t i = 0; i < ranking.variants.size(); ++i) {
     const Ranked& ranked = ranking.variants[i];
     std::vector<std::string> row{result.variants[i].name, digits_of(ranked.mean)};
@@ -108,7 +109,7 @@ TextGrid sweep_table(const TuningResult& result, const Ranking& ranking) {
       if (has_several) row.push_back(digits_of(mean));
     }
     row.push_back(i == ranking.best ? "" : text_of(ranked.from_best, result.measure));
-    row.push_back(mean_cpu(result, i));
+    row.push_back(digits_of(mean_over_drives(cpu_ms[i])));
     row.push_back(what_it_is(i, ranking));
     grid.rows.push_back(std::move(row));
   }
@@ -139,6 +140,7 @@ std::vector<std::string> sweep_words(const TuningResult& result, const Ranking& 
 }
 
 std::string sweep_json(const TuningResult& result, const Ranking& ranking) {
+  const std::vector<ResultJson> means = json_of_means(result);
   ResultJson json = head_of(result);
   json["settings"] = ResultJson::array();
   for (std::size_t i = 0; i < result.variants.size(); ++i) {
@@ -152,7 +154,7 @@ std::string sweep_json(const TuningResult& result, const Ranking& ranking) {
       one["recordings"][result.drives[drive]->files().name] = number_or_null(ranked.of_drives[drive]);
     if (i != ranking.best) one["from_best"] = json_of(ranked.from_best);
     one["worse"] = ranked.is_worse;
-    one["measures"] = json_of_means(result, i);
+    one["measures"] = means[i];
     json["settings"].push_back(std::move(one));
   }
   json["best"] = result.variants[ranking.best].name;
@@ -189,10 +191,11 @@ std::string compare_words(const TuningResult& result, std::size_t first, std::si
 namespace {
 
 ResultJson json_of_comparison(const TuningResult& result) {
+  const std::vector<ResultJson> means = json_of_means(result);
   ResultJson json = head_of(result);
   json["settings"] = ResultJson::array();
   for (std::size_t i = 0; i < result.variants.size(); ++i)
-    json["settings"].push_back({{"name", result.variants[i].name}, {"measures", json_of_means(result, i)}});
+    json["settings"].push_back({{"name", result.variants[i].name}, {"measures", means[i]}});
   json["differences"] = ResultJson::array();
   for (std::size_t second = 1; second < result.variants.size(); ++second) {
     for (const Measure& measure : measures()) {
