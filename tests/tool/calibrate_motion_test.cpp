@@ -115,12 +115,12 @@ TEST_F(CalibrateMotion, RefusesAMapThatTheDriveDoesNotFit) {
   record(300, true);
   OccupancyGrid elsewhere{{200, 200, 0.1, {-5.0, -5.0}}, CellState::kFree};
   test::fill(elsewhere, {8.0, 8.0}, {9.0, 9.0}, CellState::kOccupied);
-  test::fill(elsewhere, {9.0, 9.0}, {10.0, 10.0}, CellState::kUnknown);
+  test::fill(elsewhere, {-5.0, 12.0}, {15.0, 15.0}, CellState::kUnknown);
   write_grid(elsewhere, file("hall.yaml"));
   const ToolRun refused = calibrate();
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_NE(refused.errors.find("drive.pcapng: the pose was sure at"), std::string::npos) << refused.errors;
-  EXPECT_EQ(std::count(refused.errors.begin(), refused.errors.end(), '\n'), 1);
+  EXPECT_EQ(std::count(refused.errors.begin(), refused.errors.end(), '\n'), 1) << refused.errors;
 }
 
 }  // namespace
