@@ -16,6 +16,7 @@ constexpr Shade kOccupiedShade = 0;  // map_saver's, of 255
 constexpr Shade kUnknownShade = 205;
 constexpr Shade kFreeShade = 254;
 constexpr double kFewPixels = 0.005;  // of all: so many of one shade between are drawn, not the blur of an edge
+constexpr double kHardlyAny = 0.001;  // of all: so few unknown cells may be strays
 constexpr double kFewBeside = 0.25;   // of a drawn shade: fewer unknown cells do not tell that it is none
 constexpr double kWholeEdge = 0.95;   // of the picture's outermost pixels
 constexpr double kNearAnEnd = 0.1;    // of the light: a shade so near to black or white is meant for that
@@ -141,7 +142,8 @@ class Doubts {
   /// Scattered cells of another shade do not make a map whose unknown is known.
   void judge_unknown() {
     const auto unknown = count(CellState::kUnknown);
-    const bool is_hardly_any = static_cast<double>(unknown) < kFewPixels * static_cast<double>(all_);
+    const double share = static_cast<double>(unknown) / static_cast<double>(all_);
+    const bool is_hardly_any = share < kHardlyAny;
     const std::string few =
         unknown == 0 ? "nothing is unknown" : "hardly anything is unknown (" + counted(unknown, "cell") + ")";
     if (is_hardly_any) {
@@ -150,7 +152,7 @@ class Doubts {
     } else if (!between_.empty()) {
       add(between_line_,
           between_ + ", and only " + counted(unknown, "cell is", "cells are") + " unknown: is it right?");
-    } else if (edge_share(CellState::kFree) >= kWholeEdge) {
+    } else if (share > kFewPixels && edge_share(CellState::kFree) >= kWholeEdge) {
       add(0, percent(edge_share(CellState::kFree)) +
                  " of the picture's edge is free: is what lies outside drawn white? What no robot has seen is unknown "
                  "(205)");

@@ -421,6 +421,19 @@ TEST_F(ForeignMaps, AreReadCellForCellOrNamedInAllTheirWaysAndShapes) {
   EXPECT_GE(maps_, 200);
 }
 
+TEST_F(ForeignMaps, HaveAnUnknownThatStrayCellsDoNotMake) {
+  const auto notes_with = [&](int unknown) {
+    OccupancyGrid drawn{{200, 200, 0.05, {0.0, 0.0}}, CellState::kFree};
+    drawn.set({100, 100}, CellState::kOccupied);
+    for (int i = 0; i < unknown; ++i) drawn.set({50 + i % 10, 50 + i / 10}, CellState::kUnknown);
+    (void)folder_.write("map.pgm", plain(drawn));
+    return read_grid_with_notes(folder_.write("map.yaml", Keys{}.text())).notes;
+  };
+  ASSERT_EQ(notes_with(1).size(), 1u);
+  EXPECT_NE(notes_with(1)[0].find("hardly anything is unknown (1 cell): "), std::string::npos) << notes_with(1)[0];
+  EXPECT_TRUE(notes_with(100).empty()) << "a drawn patch";
+}
+
 TEST_F(ForeignMaps, OfAnotherTurnAreToldTheOriginOfTheTurnedPicture) {
   (void)folder_.write("map.pgm", "P5 40 20 255\n" + std::string(800, '\xFE'));
   const auto yaml = folder_.write("map.yaml", "image: map.pgm\nresolution: 0.5\norigin: [1, 2, 0.523598776]\n");
