@@ -3,6 +3,7 @@
 // and a reason is told once, not at every try. Knows no port and no timer.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,12 +35,12 @@ class Reconnect {
   [[nodiscard]] std::optional<std::string> connected();
 
   /// Failures since it last worked.
-  [[nodiscard]] int failures() const { return failures_; }
+  [[nodiscard]] std::uint64_t failures() const { return failures_; }
 
  private:
   ReconnectParams params_;
   double pause_s_ = 0.0;  // the last one; 0: begin with the first
-  int failures_ = 0;
+  std::uint64_t failures_ = 0;
   std::string told_;
 };
 

@@ -155,9 +155,9 @@ TEST(Decode, RefusesWhatIsNoHexAndLinesThatDoNotExist) {
 
 TEST(Decode, RefusesWhatIsOfARecordingBesideBytes) {
   for (const char* option : {"--kind", "--from", "--to"}) {
-    const auto run = run_deltamap({"decode", "robot", "fafb0300000000", option, option[2] == 'k' ? "SIP" : "1"});
-    EXPECT_EQ(run.exit_code, 2) << option;
-    EXPECT_NE(run.errors.find(option), std::string::npos) << run.errors;
+    const Outcome told = run({"robot", "fafb0300000000", option, option[2] == 'k' ? "SIP" : "1"});
+    EXPECT_EQ(told.exit_code, 2) << option;
+    EXPECT_NE(told.complained.find(option), std::string::npos) << told.complained;
   }
 }
 
