@@ -32,7 +32,7 @@ bool is_map_savers(const ShadeCensus& census) {
   for (Shade shade = 0; shade <= census.brightest; ++shade) {
     if (census.pixels[shade] == 0) continue;
     const auto told = of_255(shade, census.brightest);
-    if (told != kOccupiedShade && told != kUnknownShade && told != kFreeShade) return false;
+    if (!told || (*told != kOccupiedShade && *told != kUnknownShade && *told != kFreeShade)) return false;
   }
   return true;
 }

@@ -140,7 +140,7 @@ Variant variant_of(const std::string& name, const std::string& config,
   Variant variant{name, values};
   for (const auto& drive : drives) {
     std::vector<std::string> overrides = drive->files().overrides;
-    for (const auto& [key, value] : values) overrides.push_back(key + "=" + value);
+    for (const auto& [key, value] : values) overrides.push_back(std::string(key).append("=").append(value));
     variant.settings.push_back(daemon::settings_or_defaults(config, overrides));
   }
   return variant;
@@ -148,6 +148,7 @@ Variant variant_of(const std::string& name, const std::string& config,
 
 std::vector<std::uint64_t> seeds_from(std::uint64_t first, int count) {
   std::vector<std::uint64_t> seeds;
+  seeds.reserve(static_cast<std::size_t>(std::max(0, count)));
   for (int i = 0; i < count; ++i) seeds.push_back(first + static_cast<std::uint64_t>(i));
   return seeds;
 }

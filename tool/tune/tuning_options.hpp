@@ -13,7 +13,7 @@
 
 #include "tool/tune/tuning_runs.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the name of the library
 class App;
 }
 
