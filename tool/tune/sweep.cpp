@@ -58,7 +58,7 @@ std::vector<Variant> grid_of(const std::vector<Parameter>& parameters, const Swe
       values[p] = {parameters[p].key, own[rest % own.size()]};
       rest /= own.size();
     }
-    for (const auto& [key, value] : values) name += (name.empty() ? "" : ", ") + key + "=" + value;
+    for (const auto& [key, value] : values) name.append(name.empty() ? "" : ", ").append(key).append("=").append(value);
     variants.push_back(tune::variant_of(name, options.common.config, values, drives));
   }
   return variants;
