@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/pose_spread.hpp"
+
 namespace deltamap::navigation {
 namespace {
 
@@ -11,13 +13,6 @@ constexpr double kUnsureM = 1.0;
 // At a right pose four beams in five fit, where much has changed one in three for seconds (belief/fit_monitor.hpp).
 constexpr double kLeastFit = 0.2;
 constexpr double kMemoryS = 1.0;  // time constant of the mean fit: from a good one to none it takes two seconds
-
-/// Along the axis of which least is known.
-double deviation_m(const PoseCovariance& covariance) {
-  const double half_sum = 0.5 * (covariance(0, 0) + covariance(1, 1));
-  const double half_difference = 0.5 * (covariance(0, 0) - covariance(1, 1));
-  return std::sqrt(std::max(0.0, half_sum + std::hypot(half_difference, covariance(0, 1))));
-}
 
 }  // namespace
 
@@ -36,7 +31,7 @@ StopReason PoseWatch::observe(const PoseNow& pose) {
   if (pose.estimate.state == LocalizerState::kLost) return StopReason::kLost;
   if (pose.estimate.belief.verdict == PoseVerdict::kWrong) return StopReason::kPoseWrong;
   if (!pose.start_fits) return StopReason::kStartUnfit;
-  if (deviation_m(pose.estimate.covariance) > kUnsureM) return StopReason::kPoseUnsure;
+  if (widest_deviation_m(pose.estimate.covariance) > kUnsureM) return StopReason::kPoseUnsure;
   return unfit ? StopReason::kPoseUnfit : StopReason::kNone;
 }
 

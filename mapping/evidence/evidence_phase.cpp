@@ -73,7 +73,9 @@ void EvidencePhase::count_beams() {
 }
 
 /// A pose that rests on what this run has drawn may have drifted away from the ground that was known before.
-void EvidencePhase::leave_out_known_ground(votes::Votes& votes) const {
+const votes::Votes& EvidencePhase::without_known_ground(const votes::Votes& votes) {
+  votes_on_new_ground_ = votes;
+  votes::Votes& left = votes_on_new_ground_;
   const auto is_known = [this](std::uint32_t index) {
     const CellBox cells = layer_.cells_of(layer_.blocks().cell_of(index));
     for (int row = cells.first.row; row < cells.last.row; ++row) {
@@ -83,8 +85,9 @@ void EvidencePhase::leave_out_known_ground(votes::Votes& votes) const {
     }
     return false;
   };
-  for (votes::Blocks* blocks : {&votes.yes[0], &votes.yes[1], &votes.no[0], &votes.no[1], &votes.ends, &votes.all})
+  for (votes::Blocks* blocks : {&left.yes[0], &left.yes[1], &left.no[0], &left.no[1], &left.ends, &left.all})
     std::erase_if(*blocks, is_known);
+  return left;
 }
 
 bool EvidencePhase::was_known(Cell cell) const {
@@ -292,13 +295,13 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   beams_ = votes::beam_evidence(*map_, clear_, tracked, params_.beams, std::move(beams_));
   count_beams();
   const std::vector<Cell> gone = small_objects_.missed(tracked, beams_, params_.beams);
-  votes::Votes votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, tracked.scan.bearing_step_rad);
+  const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, tracked.scan.bearing_step_rad);
   transients_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
   leaves_known_ground_ = !tells_of_known_ground(estimate.belief);
-  if (leaves_known_ground_) leave_out_known_ground(votes);
-  cast(votes);
-  keyframes_.keep(tracked, votes.all);
-  redraw_queue_.see(votes.ends);
+  const votes::Votes& told = leaves_known_ground_ ? without_known_ground(votes) : votes;
+  cast(told);
+  keyframes_.keep(tracked, told.all);
+  redraw_queue_.see(told.ends);
   std::optional<ScanSet> set = waiting_.empty() ? std::nullopt : settled_regions(tracked.scan.time);
   return set ? std::move(set) : another_look(tracked.scan.time);
 }

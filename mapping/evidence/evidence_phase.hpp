@@ -70,7 +70,8 @@ class EvidencePhase {
   void take_map(std::shared_ptr<const OccupancyGrid> map);
   void count_beams();
   [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;
-  void leave_out_known_ground(votes::Votes& votes) const;
+  /// Until the next call.
+  [[nodiscard]] const votes::Votes& without_known_ground(const votes::Votes& votes);
   /// At the begin of the run.
   [[nodiscard]] bool was_known(Cell cell) const;
   void cast(const votes::Votes& votes);
@@ -90,6 +91,7 @@ class EvidencePhase {
   EvidencePhaseParams params_;
   std::shared_ptr<const OccupancyGrid> map_;
   std::shared_ptr<const OccupancyGrid> begun_with_;
+  votes::Votes votes_on_new_ground_;
   bool leaves_known_ground_ = false;  // as it is: by the newest keyframe
   votes::VoteLayer layer_;
   TransientLayer transients_;

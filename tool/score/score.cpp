@@ -142,10 +142,6 @@ void run_score(const ScoreOptions& options) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 /// With a scenario the map's changes are scored, too; that needs all of these.
 void score_simulation(ScoreOptions& options) {
   const auto one = [](const std::vector<std::string>& given, const char* option) {
