@@ -74,8 +74,13 @@ void EvidencePhase::count_beams() {
 
 /// A pose that rests on what this run has drawn may have drifted away from the ground that was known before.
 const votes::Votes& EvidencePhase::without_known_ground(const votes::Votes& votes) {
-  votes_on_new_ground_ = votes;
   votes::Votes& left = votes_on_new_ground_;
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+    left.yes[i] = votes.yes[i];
+    left.no[i] = votes.no[i];
+  }
+  left.ends = votes.ends;
+  left.all = votes.all;
   const auto is_known = [this](std::uint32_t index) {
     const CellBox cells = layer_.cells_of(layer_.blocks().cell_of(index));
     for (int row = cells.first.row; row < cells.last.row; ++row) {
