@@ -51,7 +51,7 @@ std::optional<double> share_as_told(const Scan& before, const Scan& after, const
 
 }  // namespace
 
-void MountCheck::observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch) {
+void MountCheck::observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch, bool in_doubt) {
   if (reference_) {
     const Pose2 motion = motion_between(reference_->odom_from_robot, odom_from_robot);
     const double way_m = motion.position().norm();
@@ -60,7 +60,8 @@ void MountCheck::observe(const Scan& scan, const Pose2& odom_from_robot, std::ui
     const bool is_same_run = epoch == reference_->epoch && passed_s >= 0.0 && passed_s <= kMostWayS;
     const bool is_short = way_m < kLeastWayM && turn_rad < kLeastWayRad;
     if (is_same_run && is_short) return;
-    if (is_same_run && way_m <= kMostWayM && turn_rad <= kMostWayRad) compare(scan, motion);
+    const bool sees_the_same = way_m <= kMostWayM && turn_rad <= kMostWayRad;
+    if (in_doubt && is_same_run && sees_the_same) compare(scan, motion);
   }
   reference_ = Reference{scan, odom_from_robot, epoch};
 }

@@ -17,8 +17,9 @@ enum class OtherMount : std::uint8_t { kUpsideDown, kTurnedLeft, kTurnedRound, k
 
 class MountCheck {
  public:
-  /// `odom_from_robot`: by the wheels alone, at Scan::time; poses of two epochs cannot be compared.
-  void observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch);
+  /// `odom_from_robot`: by the wheels alone, at Scan::time; poses of two epochs cannot be compared. `in_doubt`: the
+  /// way that ends here is worth a look.
+  void observe(const Scan& scan, const Pose2& odom_from_robot, std::uint32_t epoch, bool in_doubt);
   /// The mount that the scans of several ways show; nothing as long as they show the one of the settings, or none.
   [[nodiscard]] std::optional<OtherMount> shown() const;
 

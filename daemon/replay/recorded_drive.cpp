@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "daemon/replay/replay.hpp"
-#include "daemon/steps/mount_watch.hpp"
 #include "daemon/telemetry/stage.hpp"
 
 namespace deltamap::daemon {
@@ -34,25 +33,6 @@ class KeptMessages : public MessageSource {
   std::size_t next_ = 0;
 };
 
-/// The watch depends on the messages alone, and costs a quarter of a replay.
-void watch_mount(RecordedDrive& drive, const Settings& settings) {
-  MountWatch watch{settings.localizer.odometry, settings.laser.session.is_upside_down};
-  std::optional<Timestamp> first;
-  for (const RecordedMessage& recorded : drive.messages) {
-    if (const auto* odometry = std::get_if<Odometry>(&recorded.message)) {
-      watch.observe(*odometry);
-      continue;
-    }
-    const Scan& scan = std::get<Scan>(recorded.message);
-    if (!first) first = scan.time;
-    const LogLine line = watch.observe(scan);
-    if (line.text.empty()) continue;
-    drive.known_mount.told_at = scan.number;
-    drive.mount_line = "after " + std::to_string(std::lround(seconds(scan.time - *first))) + " s: " + line.text;
-    return;
-  }
-}
-
 }  // namespace
 
 RecordedDrive recorded_drive(const ReplayJob& job) {
@@ -67,7 +47,6 @@ RecordedDrive recorded_drive(const ReplayJob& job) {
   drive.recorded.faults = file.faults();
   drive.wire = file.wire();
   drive.outside_window = file.outside_window();
-  watch_mount(drive, job.settings);
   return drive;
 }
 
@@ -85,12 +64,11 @@ std::string decoding_settings(const Settings& settings) {
 RunReport replay_again(const ReplayJob& job, const RecordedDrive& drive, const FirstMap& map, ReplayOutput& output,
                        const ReplayProgress& progress) {
   const double began_cpu_s = thread_cpu_s();
-  const ReplayStart begun = replay_start(drive.recorded, job, map);
+  ReplayStart begun = replay_start(drive.recorded, job, map);
   require_pose_on(begun.start.map->geometry(), job.settings);
+  if (begun.journal == "obeyed") begun.journal = "not obeyed: settings and seeds are held against each other";
   KeptMessages source{drive};
-  // A journal that is obeyed leaves out scans and reports, so that the watch sees others.
-  const auto known_mount = begun.journal == "obeyed" ? std::nullopt : std::optional{drive.known_mount};
-  Replay replay{{job, drive.recorded, begun, source, output}, {.known_mount = known_mount, .tells_times = false}};
+  Replay replay{{job, drive.recorded, begun, source, output}, {.tells_times = false}};
   replay.run(progress);
   RunReport report = replay.finish();
   report.cpu_total_s = thread_cpu_s() - began_cpu_s;

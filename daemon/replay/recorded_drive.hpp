@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording read and decoded once, for many replays that differ in seed or settings: they write no files, tell no
-// stage's time, and what depends on the recording alone is told once. Each gives what run_replay() gives, bit for bit.
+// stage's time, and what depends on the recording alone is told once. Each gives what run_replay() gives, bit for bit,
+// but none obeys the journal: else the settings and seed of the recorded run alone would.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,6 @@ struct RecordedDrive {
   std::map<std::string, std::uint64_t> wire;
   std::size_t scans = 0;
   OutsideWindow outside_window;
-  std::string mount_line;  ///< what the scans tell of the laser's mount; empty: nothing
-  KnownMount known_mount;  ///< when they tell it
 };
 
 /// Reads recording and window of the job by its settings of robot and laser. Throws std::runtime_error as run_replay()

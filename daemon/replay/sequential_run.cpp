@@ -9,7 +9,7 @@ namespace deltamap::daemon {
 
 SequentialRun::SequentialRun(const Settings& settings, const StartMap& start, const Journal* journal,
                              double map_delay_s, const RunDuties& duties)
-    : localization_{settings, start, duties.known_mount},
+    : localization_{settings, start},
       store_scan_{settings.mapping.store_scan, settings.seed, !start.provisional.empty()},
       map_{settings, start},
       revisions_{journal, map_delay_s, start.revision},

@@ -23,8 +23,7 @@ namespace deltamap::daemon {
 
 /// What a run does beside its results, for those who look at it.
 struct RunDuties {
-  std::optional<KnownMount> known_mount{};  ///< nothing: the scans are watched for it
-  bool tells_times = true;                  ///< cpu() is measured: a twentieth of the run's time
+  bool tells_times = true;  ///< cpu() is measured: a twentieth of the run's time
 };
 
 class SequentialRun {

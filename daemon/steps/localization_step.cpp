@@ -60,14 +60,12 @@ std::string shift_from_given_pose(const Pose2& first_estimate, const Settings& s
   return text;
 }
 
-LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start,
-                                   std::optional<KnownMount> known_mount)
+LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
     : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
       fit_watch_{settings.initial_pose.has_value()},
-      known_mount_{known_mount},
+      mount_watch_{settings.localizer.odometry, settings.laser.session.is_upside_down},
       ratio_{settings.mapping.divergence},
       last_map_from_robot_{settings.initial_pose.value_or(start.remembered.value_or(Pose2{}))} {
-  if (!known_mount_) mount_watch_.emplace(settings.localizer.odometry, settings.laser.session.is_upside_down);
   if (start.revision > 0)
     apply({.number = start.revision, .time = {}, .map = start.map, .changes = {}, .field_patch = {}});
   if (start.calibration) localizer_.restore(*start.calibration);
@@ -77,24 +75,23 @@ LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& sta
 
 void LocalizationStep::observe(const Odometry& odometry) {
   localizer_.observe(odometry);
-  if (mount_watch_) mount_watch_->observe(odometry);
+  mount_watch_.observe(odometry);
   wheel_watch_.observe(odometry);
 }
 
-SensorDoubt LocalizationStep::sensor_doubt(std::uint32_t scan) const {
-  const bool is_told = mount_watch_ ? mount_watch_->is_told() : known_mount_->told_at && *known_mount_->told_at <= scan;
-  if (is_told) return SensorDoubt::kMount;
+SensorDoubt LocalizationStep::sensor_doubt() const {
+  if (mount_watch_.is_told()) return SensorDoubt::kMount;
   if (fit_watch_.is_scale_told()) return SensorDoubt::kScale;
   return wheel_watch_.contradict() ? SensorDoubt::kWheels : SensorDoubt::kNone;
 }
 
 TrackedScan LocalizationStep::observe(Scan scan) {
   lines_.clear();
-  if (mount_watch_) tell(mount_watch_->observe(scan));
+  tell(mount_watch_.observe(scan, wheel_watch_.contradicted_of_late()));
   TrackedScan tracked = localizer_.observe(std::move(scan));
   tell(fit_watch_.observe(tracked, {fit(), localizer_.fit_of_all(), localizer_.range_scale()}));
   tell(wheel_watch_.observe(tracked, localizer_.counts().wheels_contradicted));
-  tracked.sensor_doubt = sensor_doubt(tracked.scan.number);
+  tracked.sensor_doubt = sensor_doubt();
   tell_of_ground(tracked.estimate.belief.is_on_new_ground);
   learn_or_forget(tracked);
   last_map_from_robot_ = tracked.estimate.map_from_robot;

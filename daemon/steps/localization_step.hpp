@@ -45,16 +45,10 @@ void require_pose_on(const GridGeometry& map, const Settings& settings);
 /// taken to be off; else "".
 [[nodiscard]] std::string shift_from_given_pose(const Pose2& first_estimate, const Settings& settings);
 
-/// What a recording's scans tell of the laser's mount, watched before.
-struct KnownMount {
-  std::optional<std::uint32_t>
-      told_at{};  ///< number of the scan at which it shows to be another than set; nothing: never
-};
-
 class LocalizationStep {
  public:
-  /// Without a known mount the scans are watched for it. Throws std::runtime_error where the map has no free cell.
-  LocalizationStep(const Settings& settings, const StartMap& start, std::optional<KnownMount> known_mount = {});
+  /// Throws std::runtime_error where the map has no free cell.
+  LocalizationStep(const Settings& settings, const StartMap& start);
 
   void observe(const Odometry& odometry);
   [[nodiscard]] TrackedScan observe(Scan scan);
@@ -95,7 +89,7 @@ class LocalizationStep {
   void count_time(Timestamp time);
   void learn_or_forget(const TrackedScan& tracked);
   void tell(LogLine line);
-  [[nodiscard]] SensorDoubt sensor_doubt(std::uint32_t scan) const;
+  [[nodiscard]] SensorDoubt sensor_doubt() const;
   void tell_of_ground(bool is_new);
 
   localization::Localizer localizer_;
@@ -103,8 +97,7 @@ class LocalizationStep {
   std::optional<localization::motion::DriveCalibration> calibration_now_;  // after the one before
   double since_kept_m_ = 0.0;
   FitWatch fit_watch_;
-  std::optional<KnownMount> known_mount_;
-  std::optional<MountWatch> mount_watch_;
+  MountWatch mount_watch_;
   WheelWatch wheel_watch_;
   std::vector<LogLine> lines_;
   mapping::paper::DivergenceRatio ratio_;

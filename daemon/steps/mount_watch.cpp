@@ -33,11 +33,11 @@ std::string setting_of(navigation::OtherMount mount, const Scan& scan, bool is_u
 
 }  // namespace
 
-LogLine MountWatch::observe(const Scan& scan) {
+LogLine MountWatch::observe(const Scan& scan, bool contradicted) {
   if (is_told_) return {};  // by a wrong mount the robot loses its way, and what is shown then is worth less
   const auto wheels = wheels_.at(scan.time);
   if (!wheels) return {};
-  check_.observe(scan, wheels->odom_from_robot, wheels->epoch);
+  check_.observe(scan, wheels->odom_from_robot, wheels->epoch, contradicted);
   const auto shown = check_.shown();
   if (!shown) return {};
   is_told_ = true;

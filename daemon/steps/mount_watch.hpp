@@ -17,8 +17,9 @@ class MountWatch {
       : wheels_{odometry}, is_upside_down_{is_upside_down} {}
 
   void observe(const Odometry& odometry) { wheels_.add(odometry); }
-  /// With the mount of the settings. A line of no text where there is nothing to say.
-  [[nodiscard]] LogLine observe(const Scan& scan);
+  /// With the mount of the settings. A line of no text where there is nothing to say. `contradicted`: scans of late
+  /// show another motion than the wheels tell, as those of a laser that is mounted otherwise do; else nothing is asked.
+  [[nodiscard]] LogLine observe(const Scan& scan, bool contradicted);
   /// It has said so.
   [[nodiscard]] bool is_told() const { return is_told_; }
 

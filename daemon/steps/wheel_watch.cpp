@@ -17,6 +17,8 @@ constexpr double kShortest_s = 60.0;  // nobody carries a robot for so long
 constexpr double kContradictStanding = 0.1;
 constexpr int kFewestStanding = 10;  // seconds with a contradiction
 
+constexpr std::uint32_t kOfLate = 10;  // scans
+
 }  // namespace
 
 void WheelWatch::observe(const Odometry& odometry) {
@@ -38,6 +40,16 @@ void WheelWatch::count(Timestamp time, bool contradicts) {
   ++seconds_.back().scans;
   seconds_.back().contradicted += contradicts ? 1 : 0;
   while (seconds(time - seconds_.front().began) > kWindow_s) seconds_.pop_front();
+}
+
+bool WheelWatch::contradicted_of_late() const {
+  std::uint32_t seen = 0;
+  std::uint32_t count = 0;
+  for (auto one = seconds_.rbegin(); one != seconds_.rend() && seen < kOfLate; ++one) {
+    seen += one->scans;
+    count += one->contradicted;
+  }
+  return count > 0 && static_cast<double>(count) >= kContradictStanding * static_cast<double>(seen);
 }
 
 LogLine WheelWatch::judged() {

@@ -18,6 +18,8 @@ class WheelWatch {
   /// After each scan. `contradicted`: scans so far that tell of another motion than the wheels
   /// (LocalizerCounts::wheels_contradicted). A line of no text where there is nothing to say.
   [[nodiscard]] LogLine observe(const TrackedScan& tracked, std::uint64_t contradicted);
+  /// In one of the last scans in ten, or more.
+  [[nodiscard]] bool contradicted_of_late() const;
   /// They contradict each other now.
   [[nodiscard]] bool contradict() const { return contradict_; }
 

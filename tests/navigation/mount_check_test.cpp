@@ -23,6 +23,7 @@ class Drive {
   double turned_rad = 0.0;  // of the laser, against what its scans say
   bool is_upside_down = false;
   double wheels_turn_more = 1.0;  // what the wheels tell of a turn
+  bool in_doubt = true;
 
   /// A circle within the room, to the left or right.
   std::optional<OtherMount> circle(double turn_rate_rad_per_s, double for_s) {
@@ -43,7 +44,7 @@ class Drive {
                                 {.max_range_m = 8.0, .robot_from_laser = mount * Pose2{0.0, 0.0, turned_rad}}, noise_);
     scan.robot_from_laser = mount;
     if (is_upside_down) mirror(scan);
-    check_.observe(scan, odom_from_robot_, 1);
+    check_.observe(scan, odom_from_robot_, 1, in_doubt);
   }
 
   OccupancyGrid world_ = test::room_with_pillar();
@@ -88,6 +89,15 @@ TEST(MountCheck, TakesAWordBackOnceTheLaserIsMountedAsSet) {
   EXPECT_EQ(drive.circle(0.3, 60.0), OtherMount::kUpsideDown);
   drive.is_upside_down = false;
   EXPECT_EQ(drive.circle(0.3, 60.0), std::nullopt);
+}
+
+TEST(MountCheck, LooksOnlyAtWaysThatAreInDoubt) {
+  Drive drive;
+  drive.is_upside_down = true;
+  drive.in_doubt = false;
+  EXPECT_EQ(drive.circle(0.3, 60.0), std::nullopt);
+  drive.in_doubt = true;
+  EXPECT_EQ(drive.circle(0.3, 60.0), OtherMount::kUpsideDown);
 }
 
 }  // namespace

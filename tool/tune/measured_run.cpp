@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <utility>
 
@@ -102,6 +103,11 @@ MeasuredRun measured_run(TunedDrive& drive, const daemon::Settings& settings, co
   job.from_s = drive.files().from_s;
   job.to_s = drive.files().to_s;
   job.watch.scan = [&](const daemon::ReplayedScan& replayed) { measuring.look_at(replayed.tracked); };
+  if (drive.is_first_run()) {
+    job.warn = [&drive](const std::string& line) {
+      std::cerr << "deltamap: warning: " + drive.files().name + ": " + line + '\n';
+    };
+  }
   const daemon::RunReport report = daemon::replay_again(job, *decoded, drive.map(), measuring, progress);
   return std::move(measuring).run_of(drive, report, settings);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One run of a drive with some settings and a seed, and what it is worth. Its trajectory and its map are those of
-// `deltamap replay` with the same, byte for byte.
+// `deltamap replay` with the same, byte for byte; where that obeys the journal of its recording, of one that does not.
 #pragma once
 
 #include <string>

@@ -2,6 +2,7 @@
 // A recording to tune by: its map, what is known of the true way, and its messages, read and decoded once for all runs.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -49,6 +50,8 @@ class TunedDrive {
   /// What was decoded is no longer kept.
   void forget_decoded();
   [[nodiscard]] bool is_decoded() const;
+  /// True once: the run that asks first says for all of this drive what a replay would warn of. Any thread.
+  [[nodiscard]] bool is_first_run() { return !has_run_.test_and_set(); }
 
   /// Adds what the way of a run is worth to numbers. `settings`: those of the run. Throws std::runtime_error where the
   /// times of the reference do not meet those of the recording.
@@ -64,6 +67,7 @@ class TunedDrive {
   std::vector<StampedPose> reference_;
   std::vector<simulation::score::Relation> relations_;
   simulation::Truth truth_;
+  std::atomic_flag has_run_;
   mutable std::mutex decoding_;
   std::map<std::string, std::shared_ptr<const daemon::RecordedDrive>> decoded_;  // by decoding_settings()
 };

@@ -190,7 +190,6 @@ void warn_of(Drives& drives, const Variant& variant) {
       if (!line.empty()) std::cerr << "deltamap: warning: " << drives[i]->files().name << ": " << line << '\n';
     };
     for (const std::string& line : decoded->recorded.faults.lines()) warn(line);
-    warn(decoded->mount_line);
     warn(daemon::doubt_of_pose(*drives[i]->map().grid, variant.settings[i]));
     if (drives.size() > 1) drives[i]->forget_decoded();  // decoded anew by its first run: all at once may be too much
   }

@@ -31,6 +31,7 @@ class WatchedWheels {
     return said;
   }
   [[nodiscard]] bool contradict() const { return watch_.contradict(); }
+  [[nodiscard]] bool contradicted_of_late() const { return watch_.contradicted_of_late(); }
 
  private:
   bool moves_;
@@ -74,6 +75,16 @@ TEST(WheelWatch, SlipsAndSpinsAreNoFaultOfTheSettings) {
   EXPECT_EQ(watched.after(200.0, 0.02), "");
   EXPECT_EQ(watched.after(100.0, 1.0, 0.5), "") << "it spins";
   EXPECT_EQ(WatchedWheels{false}.after(600.0, 0.05), "") << "it stands, and people pass";
+}
+
+TEST(WheelWatch, TellsWhetherTheLastScansContradictedTheWheels) {
+  WatchedWheels watched{true};
+  (void)watched.after(30.0, 0.01);
+  EXPECT_FALSE(watched.contradicted_of_late()) << "one contradiction in a hundred scans: any drive has these";
+  (void)watched.after(4.0, 0.2);
+  EXPECT_TRUE(watched.contradicted_of_late());
+  (void)watched.after(4.0, 0.0);
+  EXPECT_FALSE(watched.contradicted_of_late());
 }
 
 }  // namespace

@@ -11,6 +11,9 @@
 
 #include "core/files/grid_file.hpp"
 #include "daemon/settings/fingerprint.hpp"
+#include "daemon/steps/run_begin.hpp"
+#include "drivers/port/byte_log.hpp"
+#include "drivers/port/replay_port.hpp"
 #include "tests/support/files/temporary_folder.hpp"
 #include "tests/support/files/text_file.hpp"
 #include "tests/support/files/tool_run.hpp"
@@ -247,6 +250,39 @@ TEST_F(SweepTest, HeedsAnInterruptBetweenTwoBatches) {
   (void)std::raise(SIGINT);
   EXPECT_THROW((void)batch(2), std::runtime_error);
   EXPECT_EQ(book.size(), 1u);
+}
+
+TEST_F(SweepTest, NoRunObeysTheJournalOfARecordingButAllItsCommands) {
+  daemon::Settings settings;
+  settings.recording.file = file("run.pcapng");
+  const daemon::FirstMap map = daemon::first_map(std::make_shared<const OccupancyGrid>(test::small_room(false)));
+  drivers::port::ReplayPort imported{file("drive.pcapng"), {}};
+  drivers::port::ByteLogWriter writer{file("run.pcapng"), drivers::port::FirstBauds{38400, 38400}};
+  bool has_begun = false;
+  while (const auto replayed = imported.next()) {
+    drivers::port::ByteRecord note = replayed->record;
+    note.bytes.clear();
+    std::vector<std::string> notes{"relocalized to 1 2 0 before scan 4"};
+    for (const std::string& first : daemon::first_notes(settings, map.hash, {})) notes.insert(notes.end() - 1, first);
+    for (const std::string& text : notes) {
+      note.note = text;
+      if (!has_begun) writer.write(note);
+    }
+    has_begun = true;
+    writer.write(replayed->record);
+  }
+  writer.close();
+  daemon::ReplayJob job;
+  job.recording = file("run.pcapng");
+  job.map = file("room.yaml");
+  job.out = file("replayed");
+  const auto go_on = [](double) { return true; };
+  ASSERT_EQ(daemon::run_replay(job, go_on).journal, "obeyed") << "by a replay it is";
+  fs::create_directories(file("again"));
+  daemon::FolderOutput output{file("again"), *map.grid, 0};
+  const daemon::RunReport again = daemon::replay_again(job, daemon::recorded_drive(job), map, output, go_on);
+  EXPECT_NE(again.journal, "obeyed");
+  EXPECT_EQ(again.commands, 1u);
 }
 
 TEST_F(SweepTest, KeepsNoMoreRecordingsInMemoryThanAreAtWork) {
