@@ -122,6 +122,7 @@ class DeviceLink {
   void take(std::span<const std::uint8_t> bytes, Timestamp stamp) {
     if (!is_heard_) return;
     handle(session_.on_bytes(bytes, stamp));
+    if (port_) port_->await(session_.awaited_bytes());
   }
 
   void perform(const drivers::PortRequest& request) {

@@ -51,6 +51,7 @@ class Receiver {
   [[nodiscard]] Configuration wanted_configuration() const;
 
   [[nodiscard]] unsigned baud() const { return decoder_.baud(); }
+  [[nodiscard]] std::size_t awaited_bytes() const { return decoder_.awaited_bytes(); }
   [[nodiscard]] DecoderCounts counts() const;
   /// Time from one scan to the next at this variant and baud (B7).
   [[nodiscard]] double nominal_period_s() const;

@@ -43,6 +43,8 @@ class Lms200Session {
 
   [[nodiscard]] bool is_streaming() const;
   [[nodiscard]] unsigned baud() const { return receiver_.baud(); }
+  /// Bytes that are to come before there is anything new to read; 0 where that is not known.
+  [[nodiscard]] std::size_t awaited_bytes() const { return receiver_.awaited_bytes(); }
   [[nodiscard]] DecoderCounts counts() const { return receiver_.counts(); }
   /// Time from one scan to the next at this variant and baud (B7), for judging staleness.
   [[nodiscard]] double nominal_period_s() const { return receiver_.nominal_period_s(); }

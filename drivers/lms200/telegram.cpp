@@ -79,6 +79,18 @@ bool TelegramDecoder::is_acknowledgement_at_front() const {
   return sender_ == Sender::kDevice && !in_garbage_ && (first == kAckByte || first == kNakByte);
 }
 
+std::size_t TelegramDecoder::awaited_bytes() const {
+  const std::span<const std::uint8_t> bytes = received_.bytes();
+  if (bytes.size() < kHeaderSize || header_at_front() != Header::kYes) return 0;
+  const std::size_t frame_size = length_at_front() + kFrameOverhead;
+  return frame_size > bytes.size() ? frame_size - bytes.size() : 0;
+}
+
+std::size_t TelegramDecoder::length_at_front() const {
+  const std::span<const std::uint8_t> bytes = received_.bytes();
+  return bytes[2] | static_cast<std::size_t>(bytes[3]) << 8;
+}
+
 void TelegramDecoder::skip_byte() {
   ++counts_.garbage_bytes;
   in_garbage_ = true;
@@ -98,7 +110,7 @@ void TelegramDecoder::take_telegrams(bool more_may_come, std::vector<Telegram>& 
     }
     const std::span<const std::uint8_t> bytes = received_.bytes();
     const bool has_length = header == Header::kYes;
-    const std::size_t length = has_length ? bytes[2] | static_cast<std::size_t>(bytes[3]) << 8 : 0;
+    const std::size_t length = has_length ? length_at_front() : 0;
     const std::size_t min_length = sender_ == Sender::kDevice ? 2 : 1;
     if (has_length && (length < min_length || length > kMaxLength)) {
       ++counts_.bad_length;

@@ -61,11 +61,15 @@ class TelegramDecoder {
   /// Nothing more comes: what is left is searched once more and counted.
   [[nodiscard]] std::vector<Telegram> finish();
 
+  /// Bytes that are to come before the telegram at the front is whole; 0 where its length is not known.
+  [[nodiscard]] std::size_t awaited_bytes() const;
+
   [[nodiscard]] const DecoderCounts& counts() const { return counts_; }
 
  private:
   enum class Header { kNo, kYes, kTooShortToTell };
   [[nodiscard]] Header header_at_front() const;
+  [[nodiscard]] std::size_t length_at_front() const;
   [[nodiscard]] bool is_acknowledgement_at_front() const;
   void take_telegrams(bool more_may_come, std::vector<Telegram>& telegrams);
   void take_acknowledgement(std::vector<Telegram>& telegrams);

@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::uint8_t kHeader[] = {0xFA, 0xFB};
 constexpr std::size_t kMinByteCount = 3;  // one data byte and the checksum
+constexpr std::size_t kHeaderSize = 3;    // FA FB and the byte count
+
+std::size_t frame_size_of(std::span<const std::uint8_t> bytes) { return bytes[2] + kHeaderSize; }
 
 /// Index of the next FA FB, or of a last FA that may become one, or the size.
 std::size_t next_header(std::span<const std::uint8_t> bytes) {
@@ -59,6 +62,13 @@ std::vector<Packet> PacketDecoder::finish() {
   return packets;
 }
 
+std::size_t PacketDecoder::awaited_bytes() const {
+  const std::span<const std::uint8_t> bytes = received_.bytes();
+  if (bytes.size() < kHeaderSize) return 0;
+  const std::size_t frame_size = frame_size_of(bytes);
+  return frame_size > bytes.size() ? frame_size - bytes.size() : 0;
+}
+
 void PacketDecoder::take_frames(bool more_may_come, std::vector<Packet>& packets) {
   const auto skip = [this](std::size_t count) {
     counts_.garbage_bytes += count;
@@ -68,20 +78,20 @@ void PacketDecoder::take_frames(bool more_may_come, std::vector<Packet>& packets
     skip(next_header(received_.bytes()));
     const std::span<const std::uint8_t> bytes = received_.bytes();
     if (bytes.empty()) return;
-    const bool has_length = bytes.size() >= 3;
+    const bool has_length = bytes.size() >= kHeaderSize;
     if (has_length && (bytes[2] < kMinByteCount || bytes[2] > kMaxByteCount)) {
       ++counts_.bad_length;
       skip(1);
       continue;
     }
-    const std::size_t frame_size = has_length ? bytes[2] + 3u : 0;
+    const std::size_t frame_size = has_length ? frame_size_of(bytes) : 0;
     if (!has_length || bytes.size() < frame_size) {
       if (more_may_come) return;
       ++counts_.truncated;
       skip(1);
       continue;
     }
-    const std::span<const std::uint8_t> data = bytes.subspan(3, frame_size - kFrameOverhead);
+    const std::span<const std::uint8_t> data = bytes.subspan(kHeaderSize, frame_size - kFrameOverhead);
     const unsigned sent = static_cast<unsigned>(bytes[frame_size - 2]) << 8 | bytes[frame_size - 1];
     if (checksum(data) != sent) {
       ++counts_.bad_checksum;

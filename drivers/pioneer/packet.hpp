@@ -49,6 +49,9 @@ class PacketDecoder {
   /// Nothing more comes: what is left is searched once more and counted.
   [[nodiscard]] std::vector<Packet> finish();
 
+  /// Bytes that are to come before the packet at the front is whole; 0 where its length is not known.
+  [[nodiscard]] std::size_t awaited_bytes() const;
+
   [[nodiscard]] const DecoderCounts& counts() const { return counts_; }
 
  private:

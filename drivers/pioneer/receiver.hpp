@@ -41,6 +41,7 @@ class Receiver {
 
   void set_baud(unsigned baud) { decoder_.set_baud(baud); }
   [[nodiscard]] unsigned baud() const { return decoder_.baud(); }
+  [[nodiscard]] std::size_t awaited_bytes() const { return decoder_.awaited_bytes(); }
   [[nodiscard]] DecoderCounts counts() const;
 
   // What the robot has said about itself, once it did.

@@ -65,6 +65,8 @@ class PioneerSession {
   /// SIPs come and commands are heard.
   [[nodiscard]] bool is_connected() const { return state_ == State::kConnected; }
   [[nodiscard]] unsigned baud() const { return receiver_.baud(); }
+  /// Bytes that are to come before there is anything new to read; 0 where that is not known.
+  [[nodiscard]] std::size_t awaited_bytes() const { return receiver_.awaited_bytes(); }
   [[nodiscard]] DecoderCounts counts() const { return receiver_.counts(); }
   [[nodiscard]] const DrivePermission& permission() const { return wanted_.permission(); }
   /// Or E-stall holds it.

@@ -3,6 +3,7 @@
 // on. Everything happens on the one thread that runs the port's event loop.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -36,6 +37,10 @@ class BytePort {
   virtual void set_baud(unsigned baud) = 0;
   /// Throws away what has arrived and was not handed over yet.
   virtual void discard_input() = 0;
+
+  /// To be called by on_bytes: so many more bytes have to come before any is of use, so the port need not look for them
+  /// one by one.
+  virtual void await(std::size_t bytes) = 0;
 
   /// What the operator calls it: the device's path.
   [[nodiscard]] virtual const std::string& name() const = 0;

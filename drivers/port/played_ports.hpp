@@ -52,6 +52,7 @@ class PlayedPorts {
     void write(std::span<const std::uint8_t>) override {}
     void set_baud(unsigned) override {}
     void discard_input() override {}
+    void await(std::size_t) override {}
     [[nodiscard]] const std::string& name() const override { return name_; }
     [[nodiscard]] unsigned baud() const override { return ports_.baud_; }
 

@@ -24,6 +24,7 @@ class RecordingPort final : public BytePort {
   void write(std::span<const std::uint8_t> bytes) override;
   void set_baud(unsigned baud) override;
   void discard_input() override { inner_->discard_input(); }
+  void await(std::size_t bytes) override { inner_->await(bytes); }
   [[nodiscard]] const std::string& name() const override { return inner_->name(); }
   [[nodiscard]] unsigned baud() const override { return inner_->baud(); }
 

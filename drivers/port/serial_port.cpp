@@ -30,6 +30,9 @@ using Steady = std::chrono::steady_clock;
 constexpr std::size_t kReadBytes = 65536;  // more than a terminal keeps for a program that stands still
 constexpr std::size_t kMostInTime = 1024;  // a frame has at most 812 bytes: more than that at once has waited
 constexpr auto kSettle = std::chrono::milliseconds(2);
+constexpr double kRestShare = 0.95;  // of the line time of awaited bytes: two clocks may differ by some percent
+constexpr auto kShortestRest = std::chrono::milliseconds(2);   // below that a timer costs more than it saves
+constexpr auto kLongestRest = std::chrono::milliseconds(100);  // a length may be garbage, and a device be unplugged
 constexpr auto kDrainPoll = std::chrono::milliseconds(2);
 constexpr auto kDrainMargin = std::chrono::milliseconds(5);   // for what an adapter holds behind the kernel's queue
 constexpr auto kDrainLimit = std::chrono::milliseconds(500);  // after which the baud changes, drained or not
@@ -46,7 +49,7 @@ struct Task {
 class SerialLine : public std::enable_shared_from_this<SerialLine> {
  public:
   SerialLine(asio::io_context& loop, int terminal, unsigned baud)
-      : terminal_{terminal}, baud_{baud}, descriptor_{loop, terminal}, drain_timer_{loop}, settle_timer_{loop} {}
+      : terminal_{terminal}, baud_{baud}, descriptor_{loop, terminal}, drain_timer_{loop}, rest_timer_{loop} {}
   ~SerialLine() { close(); }
 
   void start(PortHandlers handlers) {
@@ -63,15 +66,19 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   void discard_input() {
     if (!closed_) discard_unread_bytes(terminal_);
     held_ = 0;
+    rest_timer_.cancel();
   }
+
+  void await(std::size_t bytes) { awaited_ = bytes; }
 
   void close() {
     if (closed_) return;
     closed_ = true;
     handlers_ = {};
     drain_timer_.cancel();
-    settle_timer_.cancel();
-    close_terminal(descriptor_.release());
+    rest_timer_.cancel();
+    detach();
+    close_terminal(terminal_);
   }
 
  private:
@@ -88,7 +95,16 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
     });
   }
 
+  /// The loop hears of the terminal, or of nothing that it does: asio is woken by every byte that comes, wanted or not.
+  void attach() {
+    if (!descriptor_.is_open()) descriptor_.assign(terminal_);
+  }
+  void detach() {
+    if (descriptor_.is_open()) (void)descriptor_.release();
+  }
+
   void wait_for_input() {
+    attach();
     descriptor_.async_wait(asio::posix::stream_descriptor::wait_read,
                            [self = shared_from_this()](const error_code& error) {
                              if (error || self->closed_ || self->failed_) return;
@@ -101,14 +117,24 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   void read() {
     const std::size_t held_before = held_;
     const std::string gone = read_all();
-    if (gone.empty() && held_ - held_before > kMostInTime && held_ < input_.size()) return read_again_soon();
+    if (gone.empty() && held_ - held_before > kMostInTime && held_ < input_.size()) return read_after(kSettle);
     const std::size_t count = std::exchange(held_, 0);
     if (count > 0 && handlers_.on_bytes) {
       const auto on_bytes = handlers_.on_bytes;  // the handler may close this port
       on_bytes({input_.data(), count}, read_at_);
     }
     if (!gone.empty()) return fail(gone);
-    if (!closed_ && !failed_) wait_for_input();
+    if (!closed_ && !failed_) rest_or_wait(std::exchange(awaited_, 0));
+  }
+
+  /// A frame comes in twenty pieces and more: they are read together when nearly all must have come, and still each
+  /// byte is dated by those that followed it.
+  void rest_or_wait(std::size_t awaited) {
+    const auto line_time = std::chrono::microseconds(10'000'000 * awaited / baud_);
+    const auto rest = std::chrono::duration_cast<std::chrono::microseconds>(kRestShare * line_time);
+    if (rest < kShortestRest || !tasks_.empty()) return wait_for_input();
+    detach();
+    read_after(std::min<std::chrono::microseconds>(rest, kLongestRest));
   }
 
   /// Reads until nothing waits any more; returns why no more bytes will come, empty where the port lives on.
@@ -119,6 +145,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
       if (count > 0) {
         read_at_ = port_clock_now();
         held_ += static_cast<std::size_t>(count);
+        if (static_cast<std::size_t>(count) < kMostInTime) break;  // no more waits
       } else if (count == 0) {
         return "the device hung up";
       } else if (error == EAGAIN) {
@@ -130,10 +157,10 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
     return "";
   }
 
-  void read_again_soon() {
-    settle_timer_.expires_after(kSettle);
-    settle_timer_.async_wait([self = shared_from_this()](const error_code& error) {
-      if (!error && !self->closed_ && !self->failed_) self->read();
+  void read_after(std::chrono::microseconds pause) {
+    rest_timer_.expires_after(pause);
+    rest_timer_.async_wait([self = shared_from_this()](const error_code&) {
+      if (!self->closed_ && !self->failed_) self->read();
     });
   }
 
@@ -164,6 +191,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   }
 
   void wait_for_output() {
+    attach();
     descriptor_.async_wait(asio::posix::stream_descriptor::wait_write,
                            [self = shared_from_this()](const error_code& error) {
                              if (!error) self->work();
@@ -187,6 +215,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
       return false;
     }
     baud_ = task.baud;
+    rest_timer_.cancel();  // what is awaited no longer comes at the old speed
     return true;
   }
 
@@ -194,11 +223,12 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   unsigned baud_;
   asio::posix::stream_descriptor descriptor_;
   asio::steady_timer drain_timer_;
-  asio::steady_timer settle_timer_;
+  asio::steady_timer rest_timer_;
   PortHandlers handlers_;
   std::array<std::uint8_t, kReadBytes> input_{};
-  std::size_t held_ = 0;  // bytes in input_ that are not handed over yet
-  Timestamp read_at_;     // when the newest byte in input_ was read
+  std::size_t held_ = 0;     // bytes in input_ that are not handed over yet
+  std::size_t awaited_ = 0;  // before more is of use
+  Timestamp read_at_;        // when the newest byte in input_ was read
   std::deque<Task> tasks_;
   Steady::time_point line_free_at_{};
   bool closed_ = false;
@@ -220,6 +250,7 @@ class SerialPort final : public BytePort {
     line_->add({{}, 0, baud});
   }
   void discard_input() override { line_->discard_input(); }
+  void await(std::size_t bytes) override { line_->await(bytes); }
   [[nodiscard]] const std::string& name() const override { return path_; }
   [[nodiscard]] unsigned baud() const override { return baud_; }
 

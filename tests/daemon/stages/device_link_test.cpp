@@ -34,6 +34,7 @@ class FakeSession {
   }
   void on_baud(unsigned) {}
   [[nodiscard]] unsigned baud() const { return 9600; }
+  [[nodiscard]] std::size_t awaited_bytes() const { return 0; }
 
  private:
   /// A word at a time.
@@ -56,6 +57,7 @@ class FakePort final : public port::BytePort {
   }
   void set_baud(unsigned) override {}
   void discard_input() override {}
+  void await(std::size_t) override {}
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] unsigned baud() const override { return 9600; }
 

@@ -62,6 +62,18 @@ TEST(LmsTelegram, DecodesWhatItEncodes) {
   }
 }
 
+TEST(LmsTelegram, TellsHowManyBytesAreToComeOnceTheLengthIsKnown) {
+  for_both_senders([](Sender sender, const tests::Bytes& frame) {
+    TelegramDecoder decoder{sender, kBaud};
+    EXPECT_EQ(decoder.awaited_bytes(), 0u);
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      (void)decoder.decode(std::span{frame}.subspan(i, 1), kStart);
+      const bool knows = i + 1 >= 4;
+      EXPECT_EQ(decoder.awaited_bytes(), knows ? frame.size() - i - 1 : 0) << hex_of(frame) << " after " << i + 1;
+    }
+  });
+}
+
 TEST(LmsTelegram, DecodesNothingFromAnyCutAndCountsIt) {
   for_both_senders([](Sender sender, const tests::Bytes& frame) {
     for (const auto& cut : tests::every_cut(frame)) {

@@ -49,6 +49,18 @@ TEST(PioneerPacket, SumsAnOddLastByteIntoTheLowByte) {
   EXPECT_EQ(checksum(bytes_from_hex("37")), 0x0037);
 }
 
+TEST(PioneerPacket, TellsHowManyBytesAreToComeOnceTheByteCountIsKnown) {
+  for (const std::string& hex : kFrames) {
+    const auto frame = bytes_from_hex(hex);
+    PacketDecoder decoder{kBaud};
+    EXPECT_EQ(decoder.awaited_bytes(), 0u);
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      (void)decoder.decode(std::span{frame}.subspan(i, 1), kStart);
+      EXPECT_EQ(decoder.awaited_bytes(), i + 1 >= 3 ? frame.size() - i - 1 : 0) << hex << " after " << i + 1;
+    }
+  }
+}
+
 TEST(PioneerPacket, DecodesNothingFromAnyCutAndCountsIt) {
   for (const std::string& hex : kFrames) {
     for (const auto& cut : tests::every_cut(bytes_from_hex(hex))) {

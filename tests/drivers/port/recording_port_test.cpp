@@ -21,6 +21,7 @@ class ScriptedPort final : public BytePort {
     calls_.push_back("baud " + std::to_string(baud));
   }
   void discard_input() override { calls_.push_back("discard"); }
+  void await(std::size_t bytes) override { calls_.push_back("await " + std::to_string(bytes)); }
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] unsigned baud() const override { return baud_; }
 
@@ -49,10 +50,11 @@ TEST(RecordingPort, HandsOnEverythingAndTellsTheSinkInOrder) {
   port.write(out);
   port.set_baud(38400);
   port.discard_input();
+  port.await(7);
   device.handlers_.on_bytes(in, timestamp_from_ns(43));
   device.handlers_.on_closed("unplugged");
 
-  EXPECT_EQ(calls, (std::vector<std::string>{"write 3", "baud 38400", "discard"}));
+  EXPECT_EQ(calls, (std::vector<std::string>{"write 3", "baud 38400", "discard", "await 7"}));
   EXPECT_EQ(received, in);
   EXPECT_EQ(closed, "unplugged");
   EXPECT_EQ(port.name(), "scripted");

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "drivers/port/port_clock.hpp"
@@ -133,6 +134,60 @@ TEST(SerialPort, HandsOverAsOneChunkWhatComesInPiecesBehindAStandstill) {
   loop.restart();
   EXPECT_EQ(loop.run_one(), 1u);
   EXPECT_EQ(chunks.size(), 2u);
+}
+
+/// Awaits so many bytes after each chunk, and answers the chunks that three pieces of a frame come in.
+std::vector<std::size_t> chunks_of_a_frame(std::size_t awaited, const std::function<void(BytePort&)>& meanwhile = {}) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  std::vector<std::size_t> chunks;
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 9600);
+  EXPECT_TRUE(port) << refused;
+  if (!port) return {};
+  port->start({[&, to = port.get()](std::span<const std::uint8_t> bytes, Timestamp) {
+                 chunks.push_back(bytes.size());
+                 to->await(awaited);
+               },
+               {}});
+  for (int piece = 0; piece < 3; ++piece) {
+    device.send(Bytes(20, 0x02));
+    loop.restart();
+    loop.run_one();
+    if (meanwhile) meanwhile(*port);
+  }
+  run_until(loop, [&] { return std::accumulate(chunks.begin(), chunks.end(), std::size_t{0}) == 60; });
+  return chunks;
+}
+
+TEST(SerialPort, LooksForBytesThatAreOfNoUseYetWhenAllMustHaveCome) {
+  EXPECT_EQ(chunks_of_a_frame(0), (std::vector<std::size_t>{20, 20, 20}));
+  const std::vector<std::size_t> rested = chunks_of_a_frame(80);
+  EXPECT_LE(rested.size(), 3u);
+  EXPECT_EQ(rested.front(), 20u) << "the first piece is stamped as it comes";
+}
+
+TEST(SerialPort, RestsNoLongerWhereTheBaudChangesOrInputIsDiscarded) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  std::size_t count = 0;
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(port) << refused;
+  port->start({[&, to = port.get()](std::span<const std::uint8_t> bytes, Timestamp) {
+                 count += bytes.size();
+                 to->await(800);
+               },
+               {}});
+  for (const auto& end_rest :
+       {std::function{[&] { port->set_baud(38400); }}, std::function{[&] { port->discard_input(); }}}) {
+    device.send(Bytes(4, 0x02));
+    const std::size_t before = count;
+    run_until(loop, [&] { return count > before; });
+    const auto began = std::chrono::steady_clock::now();
+    end_rest();
+    device.send({0x06});
+    run_until(loop, [&] { return count == before + 5; });
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(80));
+  }
 }
 
 TEST(SerialPort, ChangesTheBaudAfterTheBytesBeforeAndBeforeTheBytesAfter) {

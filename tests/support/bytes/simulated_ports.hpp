@@ -73,6 +73,7 @@ class SimulatedPorts {
     void write(std::span<const std::uint8_t> bytes) override { ports_.write(id_, bytes); }
     void set_baud(unsigned baud) override { ports_.baud(id_) = baud_ = baud; }
     void discard_input() override { (void)ports_.fetch(id_); }
+    void await(std::size_t) override {}
     [[nodiscard]] const std::string& name() const override { return name_; }
     [[nodiscard]] unsigned baud() const override { return baud_; }
 
