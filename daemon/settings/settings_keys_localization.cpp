@@ -71,7 +71,7 @@ void add_belief(localization::LocalizerParams& localizer, Keys& keys) {
   keys.push_back(number_key("localization.global.converged_after_m", localizer.fit.converged_after_m, "m", 0.0, 1000.0,
                             "distance driven before global localization may end, unless the robot has turned by half "
                             "a turn: one view may look like another"));
-  keys.push_back(whole_key("localization.global.candidates_a_scan", localizer.global.candidates_a_scan, "", 100,
+  keys.push_back(whole_key("localization.global.candidates_a_scan", localizer.global.alone.candidates, "", 100,
                            100000000, "poses of the whole map looked at in one scan while the pose is unknown"));
 }
 

@@ -46,8 +46,8 @@ bool GlobalSearch::due_again(const Pose2& continuous_odom_from_robot) const {
 }
 
 std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, const sensor::LikelihoodField& field,
-                                          const Ends& ends, const Pose2& continuous_odom_from_robot, double pace) {
-  const auto share_of = [pace](int count) { return static_cast<std::size_t>(std::max(1.0, pace * count)); };
+                                          const Ends& ends, const Pose2& continuous_odom_from_robot, bool beside) {
+  const SearchShare& share = beside ? params_.beside : params_.alone;
   hypotheses_.clear();
   if (stage_ == Stage::kDone && due_again(continuous_odom_from_robot)) stage_ = Stage::kBegin;
   if (ends.all.size() == 0 || stage_ == Stage::kDone) return hypotheses_;
@@ -59,7 +59,7 @@ std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, con
     stage_ = Stage::kLooking;
   }
   if (stage_ == Stage::kLooking) {
-    const std::size_t now = std::min(left_, share_of(params_.candidates_a_scan));
+    const std::size_t now = std::min(left_, static_cast<std::size_t>(std::max(1, share.candidates)));
     lattice_.look(coarse, ends_, now);
     left_ -= now;
     if (left_ > 0) return hypotheses_;
@@ -70,7 +70,7 @@ std::span<const Pose2> GlobalSearch::look(const sensor::CoarseField& coarse, con
   }
   // Carried along by the wheels since the scan that found them, and refined to where the newest scan fits.
   const Pose2 motion = motion_between(continuous_odom_from_robot_, continuous_odom_from_robot);
-  const std::size_t until = std::min(candidates_.size(), next_ + share_of(params_.refined_a_scan));
+  const std::size_t until = std::min(candidates_.size(), next_ + static_cast<std::size_t>(std::max(1, share.refined)));
   for (; next_ < until; ++next_) {
     hypotheses_.push_back(settled(field, ends.all, candidates_[next_].map_from_robot * motion));
   }

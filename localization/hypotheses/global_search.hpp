@@ -12,10 +12,16 @@
 
 namespace deltamap::localization::hypotheses {
 
+/// Of one scan.
+struct SearchShare {
+  int candidates = 0;  ///< poses looked at; > 0
+  int refined = 0;     ///< candidates that are refined to their best fit; > 0
+};
+
 struct GlobalSearchParams {
-  int candidates_a_scan = 100000;          ///< poses looked at in one scan; > 0
+  SearchShare alone{5'000'000, 200};       ///< while nothing is believed: a hall of 100 m at once, 20 ms of a fast core
+  SearchShare beside{50'000, 40};          ///< beside a believed pose
   int refined = 600;                       ///< candidates that are refined to their best fit; > 0
-  int refined_a_scan = 200;                ///< of these in one scan; > 0
   double again_after_m = 0.5;              ///< driven until the whole map is looked at again, m; > 0
   double again_after_rad = radians(30.0);  ///< or heading turned until then, rad; > 0
 };
@@ -37,11 +43,11 @@ class GlobalSearch {
     const motion::BeamEnds& near;  ///< that a coarse lattice of headings can place; may be all
   };
 
-  /// One scan's share of the work. Answers poses at which this scan fits; valid until the next call.
-  /// `pace`: how much of a full share, (0, 1].
+  /// One scan's share of the work. Answers poses at which this scan fits; valid until the next call. `beside` a
+  /// believed pose: slowly.
   [[nodiscard]] std::span<const Pose2> look(const sensor::CoarseField& coarse, const sensor::LikelihoodField& field,
                                             const Ends& ends, const Pose2& continuous_odom_from_robot,
-                                            double pace = 1.0);
+                                            bool beside = false);
 
  private:
   enum class Stage : std::uint8_t { kBegin, kLooking, kSliding, kDone };

@@ -165,8 +165,7 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   if (believing_) probe(field, seen.continuous_odom_from_robot);
   if (!believing_ || suspicious_ || kidnapped_) {
     const std::span<const Pose2> found =
-        search_.look(coarse_, field, {ends_, near_ends_}, seen.continuous_odom_from_robot,
-                     believing_ && !kidnapped_ ? params_.suspicious_pace : 1.0);
+        search_.look(coarse_, field, {ends_, near_ends_}, seen.continuous_odom_from_robot, believing_ && !kidnapped_);
     if (!found.empty()) admit_all(field, found, seen.continuous_odom_from_robot);
   }
   bank_.settle();

@@ -34,11 +34,10 @@ struct HypothesisTrackerParams {
       0.001;               ///< odds of being elsewhere against near, where the believed pose has proven wrong; 0..1
   double beats_by = 12.0;  ///< log evidence of clearly better, whatever the odds before; > 0
   double stable_support_nats = 16.0;  ///< more log evidence against a pose that proven tiles support; >= 0
-  double most_ahead = 10.0;      ///< log evidence that a hypothesis may be found with ahead of the believed one; >= 0
-  int refined_a_scan = 4;        ///< hypotheses that are refined to their best fit at a scan while tracking; >= 0
-  double block_m = 0.25;         ///< side of the coarse field's blocks, m; > 0
-  int headings = 96;             ///< of the lattice of poses; > 0
-  double suspicious_pace = 0.2;  ///< of a search of the whole map while a pose is believed; (0, 1]
+  double most_ahead = 10.0;  ///< log evidence that a hypothesis may be found with ahead of the believed one; >= 0
+  int refined_a_scan = 4;    ///< hypotheses that are refined to their best fit at a scan while tracking; >= 0
+  double block_m = 0.25;     ///< side of the coarse field's blocks, m; > 0
+  int headings = 96;         ///< of the lattice of poses; > 0
 };
 
 class HypothesisTracker {

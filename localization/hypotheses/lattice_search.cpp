@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -76,8 +77,10 @@ double LatticeSearch::heading_rad(std::size_t nth) const {
   return wrapped_angle(2.0 * std::numbers::pi * static_cast<double>(turned) / static_cast<double>(headings_));
 }
 
+/// Whatever the order they come in, those are kept that fit best.
 void LatticeSearch::keep(const Candidate& candidate) {
   if (best_.size() == most_) {
+    if (!fits_better(candidate, best_.front())) return;
     std::pop_heap(best_.begin(), best_.end(), fits_better);
     best_.pop_back();
   }
@@ -85,38 +88,79 @@ void LatticeSearch::keep(const Candidate& candidate) {
   std::push_heap(best_.begin(), best_.end(), fits_better);
 }
 
+Candidate LatticeSearch::candidate_at(const sensor::CoarseField& field, const sensor::TurnedBeams& beams,
+                                      std::size_t nth_heading, std::uint32_t block, std::int32_t misfit) const {
+  const Point2 at = field.centre_of(block);
+  const std::size_t blocks = static_cast<std::size_t>(field.columns()) * static_cast<std::size_t>(field.rows());
+  return {{at.x(), at.y(), heading_rad(nth_heading)},
+          misfit,
+          static_cast<std::uint32_t>(nth_heading * blocks + block),
+          static_cast<std::uint32_t>(beams.count)};
+}
+
 void LatticeSearch::judge(const sensor::CoarseField& field, const sensor::TurnedBeams& beams, std::size_t nth_heading,
                           std::size_t from, std::size_t until) {
   const std::span<const std::uint32_t> blocks = field.free_blocks();
-  const double heading = heading_rad(nth_heading);
   while (from < until) {
     const std::uint32_t first = blocks[from];
     const std::uint32_t beyond = std::min(first + sensor::CoarseField::kAtOnce, next_row(first, field.columns()));
     const sensor::CoarseMisfits misfits = sensor::coarse_misfits(field, beams, first);
     for (; from < until && blocks[from] < beyond; ++from) {
       const std::int32_t misfit = misfits[blocks[from] - first];
-      if (best_.size() == most_ && misfit >= best_.front().misfit) continue;
-      const Point2 at = field.centre_of(blocks[from]);
-      keep({{at.x(), at.y(), heading},
-            misfit,
-            static_cast<std::uint32_t>(nth_heading * blocks.size() + from),
-            static_cast<std::uint32_t>(beams.count)});
+      if (may_keep(misfit)) keep(candidate_at(field, beams, nth_heading, blocks[from], misfit));
     }
   }
 }
 
+void LatticeSearch::judge_quads(const sensor::CoarseField& field, const sensor::TurnedBeams& beams,
+                                std::size_t nth_heading, std::size_t from, std::size_t until) {
+  constexpr int kAtOnce = sensor::CoarseField::kAtOnce / 2;  // quads, of which the blocks are looked at together
+  static_assert(sensor::QuadBounds::kAtOnce == 2 * kAtOnce);
+  const std::span<const sensor::CoarseField::Quad> quads = field.free_quads();
+  while (from < until) {
+    const sensor::CoarseField::Quad first = quads[from];
+    const auto bounds = field.quads().bounds(beams, first.column, first.row);
+    std::array<std::uint32_t, 2> open{};
+    for (; from < until && quads[from].row == first.row; ++from) {
+      const int nth = quads[from].column - first.column;
+      if (nth >= 2 * kAtOnce) break;
+      if (may_keep(bounds[static_cast<std::size_t>(nth)])) open[nth / kAtOnce] |= 1U << (nth % kAtOnce);
+    }
+    for (int half = 0; half < 2; ++half) {
+      if (open[half] == 0) continue;
+      const Cell block{2 * (first.column + half * kAtOnce), 2 * first.row};
+      judge_row(field, beams, nth_heading, block, open[half]);
+      judge_row(field, beams, nth_heading, {block.column, block.row + 1}, open[half]);
+    }
+  }
+}
+
+void LatticeSearch::judge_row(const sensor::CoarseField& field, const sensor::TurnedBeams& beams,
+                              std::size_t nth_heading, const Cell& first, std::uint32_t quads) {
+  if (first.row >= field.rows()) return;
+  const auto block = static_cast<std::uint32_t>(first.row * field.columns() + first.column);
+  const sensor::CoarseMisfits misfits = sensor::coarse_misfits(field, beams, block);
+  for (std::uint32_t nth = 0; nth < misfits.size(); ++nth) {
+    const bool is_open = (quads >> (nth / 2) & 1U) != 0;
+    if (!is_open || !may_keep(misfits[nth]) || !field.is_free(first.column + static_cast<int>(nth), first.row))
+      continue;
+    keep(candidate_at(field, beams, nth_heading, block + nth, misfits[nth]));
+  }
+}
+
 void LatticeSearch::look(const sensor::CoarseField& field, const motion::BeamEnds& ends, std::size_t count) {
-  const std::span<const std::uint32_t> blocks = field.free_blocks();
-  if (blocks.empty() || ends.size() == 0) return;
-  next_block_ = std::min(next_block_, blocks.size() - 1);  // the map may have changed
-  while (count > 0) {
+  const std::size_t quads = field.free_quads().size();
+  if (quads == 0 || ends.size() == 0) return;
+  std::size_t left = (count + kInQuad - 1) / kInQuad;
+  next_quad_ = std::min(next_quad_, quads - 1);  // the map may have changed
+  while (left > 0) {
     const sensor::TurnedBeams beams = sensor::turned_beams(ends, heading_rad(next_heading_), field.block_m());
-    const std::size_t until = std::min(blocks.size(), next_block_ + count);
-    judge(field, beams, next_heading_, next_block_, until);
-    count -= until - next_block_;
-    next_block_ = until;
-    if (next_block_ < blocks.size()) continue;
-    next_block_ = 0;
+    const std::size_t until = std::min(quads, next_quad_ + left);
+    judge_quads(field, beams, next_heading_, next_quad_, until);
+    left -= until - next_quad_;
+    next_quad_ = until;
+    if (next_quad_ < quads) continue;
+    next_quad_ = 0;
     next_heading_ = (next_heading_ + 1) % headings_;
     if (next_heading_ == 0) return;
   }

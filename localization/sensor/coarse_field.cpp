@@ -10,7 +10,6 @@
 namespace deltamap::localization::sensor {
 namespace {
 
-constexpr std::int16_t kFarthest = 16000;  // blocks; the map's border is nearer
 constexpr auto kBeforeColumns = static_cast<std::int16_t>(-CoarseField::kAtOnce);
 constexpr std::int16_t kBeforeRows = -1;
 
@@ -27,6 +26,7 @@ CoarseField::CoarseField(const OccupancyGrid& map, const LikelihoodField& field,
   origin_ = lattice_.blocks().origin + block_m_ * Point2{first_block_.column, first_block_.row};
   const auto area = static_cast<std::size_t>(padded_columns()) * static_cast<std::size_t>(rows_ + 2);
   bytes_.assign(area, field.bordered().bytes[0]);
+  quads_ = QuadBounds{columns_, rows_, field.bordered().bytes[0]};
   free_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), false);
   update(map, field, window_);
 }
@@ -38,11 +38,14 @@ void CoarseField::update(const OccupancyGrid& map, const LikelihoodField& field,
     return;
   }
   const CellBox blocks = lattice_.blocks_of(changed);
-  for (int row = blocks.first.row - first_block_.row; row < blocks.last.row - first_block_.row; ++row) {
-    for (int column = blocks.first.column; column < blocks.last.column; ++column) {
-      look_at(map, field, column - first_block_.column, row);
+  const auto of_each = [&](auto&& look) {
+    for (int row = blocks.first.row - first_block_.row; row < blocks.last.row - first_block_.row; ++row) {
+      for (int column = blocks.first.column; column < blocks.last.column; ++column)
+        look(column - first_block_.column, row);
     }
-  }
+  };
+  of_each([&](int column, int row) { look_at(map, field, column, row); });
+  of_each([&](int column, int row) { quads_.look_at(column, row, [&](int x, int y) { return *from(x, y); }); });
   list_free_blocks();
 }
 
@@ -76,8 +79,16 @@ void CoarseField::look_at(const OccupancyGrid& map, const LikelihoodField& field
 
 void CoarseField::list_free_blocks() {
   free_blocks_.clear();
+  free_quads_.clear();
   for (std::size_t i = 0; i < free_.size(); ++i) {
     if (free_[i]) free_blocks_.push_back(static_cast<std::uint32_t>(i));
+  }
+  for (int row = 0; row < rows_; row += 2) {
+    for (int column = 0; column < columns_; column += 2) {
+      const bool any =
+          is_free(column, row) || is_free(column + 1, row) || is_free(column, row + 1) || is_free(column + 1, row + 1);
+      if (any) free_quads_.push_back({static_cast<std::int16_t>(column / 2), static_cast<std::int16_t>(row / 2)});
+    }
   }
 }
 
@@ -99,27 +110,9 @@ CoarseField::Run CoarseField::free_in_row(int row, double from_m, double to_m) c
   return {first_beyond(from_m), first_beyond(to_m)};
 }
 
-TurnedBeams turned_beams(const motion::BeamEnds& ends, double heading_rad, double block_m) {
-  TurnedBeams beams;
-  beams.count = std::min(ends.size(), TurnedBeams::kMost);
-  const double c = std::cos(heading_rad) / block_m;
-  const double s = std::sin(heading_rad) / block_m;
-  const auto whole = [](double blocks) {
-    return static_cast<std::int16_t>(std::clamp<double>(std::floor(blocks + 0.5), -kFarthest, kFarthest));
-  };
-  for (std::size_t i = 0; i < beams.count; ++i) {
-    const std::size_t from = i * ends.size() / beams.count;
-    const auto x_m = static_cast<double>(ends.x_m[from]);
-    const auto y_m = static_cast<double>(ends.y_m[from]);
-    beams.columns[i] = whole(c * x_m - s * y_m);
-    beams.rows[i] = whole(s * x_m + c * y_m);
-  }
-  return beams;
-}
-
 /// In 16 bits throughout: eight beams an instruction.
 CoarseField::Places CoarseField::places_of(const TurnedBeams& beams, int column, int row) const {
-  assert(std::max(columns_, rows_) < kFarthest && "a beam's block must fit 16 bits");
+  assert(std::max(columns_, rows_) < TurnedBeams::kFarthest && "a beam's block must fit 16 bits");
   const auto own_column = static_cast<std::int16_t>(column);
   const auto own_row = static_cast<std::int16_t>(row);
   const auto beyond_column = static_cast<std::int16_t>(columns_);

@@ -15,16 +15,10 @@
 #include "core/grid/grid_patch.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/sensor/likelihood_field.hpp"
+#include "localization/sensor/quad_bounds.hpp"
+#include "localization/sensor/turned_beams.hpp"
 
 namespace deltamap::localization::sensor {
-
-/// A few beams of a scan turned to one heading, as whole blocks from the block that the robot stands in.
-struct TurnedBeams {
-  static constexpr std::size_t kMost = 32;
-  std::array<std::int16_t, kMost> columns{};
-  std::array<std::int16_t, kMost> rows{};
-  std::size_t count = 0;
-};
 
 /// Its blocks are those that the field's window touches, counted from there.
 class CoarseField {
@@ -37,6 +31,9 @@ class CoarseField {
 
   /// Blocks in whose middle a robot may stand: one of the cells there is free. Rising.
   [[nodiscard]] std::span<const std::uint32_t> free_blocks() const { return free_blocks_; }
+  [[nodiscard]] bool is_free(int column, int row) const {
+    return column < columns_ && row < rows_ && free_[static_cast<std::size_t>(row * columns_ + column)];
+  }
   [[nodiscard]] Point2 centre_of(std::uint32_t block) const;
   [[nodiscard]] double middle_of_row(int row) const { return origin_.y() + (row + 0.5) * block_m_; }
   /// Places in free_blocks(), from `first` to before `past`.
@@ -49,6 +46,15 @@ class CoarseField {
   [[nodiscard]] double block_m() const { return block_m_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
+
+  /// Four blocks, from the one at twice this column and row on.
+  struct Quad {
+    std::int16_t column = 0;
+    std::int16_t row = 0;
+  };
+  /// In which one block at least is free. Row by row from the lowest.
+  [[nodiscard]] std::span<const Quad> free_quads() const { return free_quads_; }
+  [[nodiscard]] const QuadBounds& quads() const { return quads_; }
 
   static constexpr int kAtOnce = 16;  ///< blocks side by side that are looked at together
 
@@ -83,9 +89,9 @@ class CoarseField {
   std::vector<std::uint8_t> bytes_;  // rows with one unknown row on each side, and kAtOnce unknown columns
   std::vector<bool> free_;
   std::vector<std::uint32_t> free_blocks_;
+  QuadBounds quads_;
+  std::vector<Quad> free_quads_;
 };
-
-[[nodiscard]] TurnedBeams turned_beams(const motion::BeamEnds& ends, double heading_rad, double block_m);
 
 /// Sums of the field's steps over the beams with the robot in the middle of the block, and of those to its right.
 /// Places beyond the end of the row say nothing.

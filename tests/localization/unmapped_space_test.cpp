@@ -141,7 +141,8 @@ TEST(UnmappedSpace, IsNoHidingPlaceForARobotThatWasCarried) {
   test::fill_box(map, {19.0, 5.5}, {21.0, 8.0}, CellState::kOccupied);
   LocalizerParams slow = Walk::small();
   slow.hypothesis_tracker.probes = 0;
-  slow.global.candidates_a_scan = 4000;
+  slow.global.alone.candidates = 4000;
+  slow.global.beside.candidates = 800;
   Walk walk{map, map, {1.0, 2.0, 0.0}, 8.0, 9, slow};
   for (int i = 0; i < 60; ++i) (void)walk.next({0.01, 0.0, 0.0});
   walk.carry_to({15.0, 3.0, 0.2});

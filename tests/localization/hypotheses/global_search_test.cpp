@@ -50,7 +50,7 @@ TEST(GlobalSearch, CarriesWhatItFoundAlongWithTheWheels) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
   const sensor::CoarseField coarse{map, field, kBlock_m};
-  GlobalSearch search{{.candidates_a_scan = 8000, .refined_a_scan = 50}, kHeadings};
+  GlobalSearch search{{.alone = {.candidates = 8000, .refined = 50}}, kHeadings};
   Pose2 truth{1.0, 2.0, 0.9};
   Pose2 joined{7.0, 8.0, -2.0};  // odometry starts anywhere
   bool found = false;

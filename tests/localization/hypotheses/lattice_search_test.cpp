@@ -37,6 +37,31 @@ TEST(LatticeSearch, LooksAtEveryPoseOnceHoweverItIsSliced) {
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].map_from_robot, expected[i].map_from_robot);
 }
 
+TEST(LatticeSearch, FindsWhatALookAtEachPoseAloneFinds) {
+  const OccupancyGrid map = test::drawn_flat();
+  const sensor::CoarseField coarse{map, sensor::LikelihoodField{map, {}}, kBlockM};
+  const motion::BeamEnds ends = ends_seen_from({4.5, 2.0, 1.1});
+  std::vector<std::int32_t> expected;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const double heading_rad = wrapped_angle(radians(360.0) * turn / kTurns);
+    const sensor::TurnedBeams beams = sensor::turned_beams(ends, heading_rad, kBlockM);
+    for (const std::uint32_t block : coarse.free_blocks())
+      expected.push_back(sensor::coarse_misfits(coarse, beams, block).front());
+  }
+  std::sort(expected.begin(), expected.end());
+  constexpr std::size_t kKept = 200;
+  LatticeSearch lattice{kTurns, kKept};
+  lattice.look(coarse, ends, lattice.poses(coarse));
+  const std::vector<Candidate> found = lattice.best_apart(kKept);
+  ASSERT_GT(found.size(), 5u);
+  EXPECT_EQ(found.front().misfit, expected.front());
+  EXPECT_LE(found.back().misfit, expected[kKept - 1]);
+  LatticeSearch all{kTurns, expected.size()};
+  all.look(coarse, ends, all.poses(coarse));
+  const std::vector<Candidate> apart = all.best_apart(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].map_from_robot, apart[i].map_from_robot) << i;
+}
+
 TEST(LatticeSearch, KnowsWhereAScanMayFitAsWellAsAtTheTruth) {
   const OccupancyGrid map = test::drawn_flat();
   const sensor::LikelihoodField field{map, {}};
