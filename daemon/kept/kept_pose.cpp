@@ -59,6 +59,17 @@ std::optional<KeptPose> pose_in(const Json& json, std::uint64_t first_map) {
 
 }  // namespace
 
+KeptPose kept_pose_of(const LocalizationRow& row, std::uint64_t first_map,
+                      std::optional<localization::motion::DriveCalibration> calibration) {
+  return {.first_map = first_map,
+          .revision = row.revision,
+          .time = row.time,
+          .map_from_robot = row.map_from_robot,
+          .covariance = row.covariance,
+          .is_sure = row.is_sure(),
+          .calibration = calibration};
+}
+
 std::string json_text(const KeptPose& pose) {
   Json json;
   json["map"] = hex_of(pose.first_map);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/messages.hpp"
+#include "daemon/outputs/localization_log.hpp"
 #include "localization/motion/drive_calibration.hpp"
 
 namespace deltamap::daemon {
@@ -24,6 +25,10 @@ struct KeptPose {
   bool is_sure = false;  ///< tracking, and nothing spoke against the pose; else a start does not use it
   std::optional<localization::motion::DriveCalibration> calibration{};  ///< a start uses it whatever the pose is worth
 };
+
+/// Of the newest scan.
+[[nodiscard]] KeptPose kept_pose_of(const LocalizationRow& row, std::uint64_t first_map,
+                                    std::optional<localization::motion::DriveCalibration> calibration);
 
 [[nodiscard]] std::string json_text(const KeptPose& pose);
 

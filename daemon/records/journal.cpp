@@ -126,6 +126,7 @@ void Journal::read(std::string_view note) {
     return;
   }
   has_gap_ = has_gap_ || note == kGapNote;
+  is_part_ = is_part_ || note == kPartNote;
   if (auto set = set_cells_.read(note)) {
     Decision command{.kind = Kind::kMapSet, .scan = set->order.scan};
     command.scan_time = set->order.scan_time;
@@ -181,7 +182,7 @@ void Journal::add_command(Decision command) {
 }
 
 std::strong_ordering Journal::place_of(const Decision& command, const Scan& scan) const {
-  const bool scans_count_as_live = run_ && !has_gap_;
+  const bool scans_count_as_live = run_ && !has_gap_ && !is_part_;
   if (command.scan_time && !scans_count_as_live) return *command.scan_time <=> scan.time;
   return command.scan <=> scan.number;
 }

@@ -61,6 +61,11 @@ struct Decision {
 /// The note that stands where records are missing: the disk was full or too slow.
 inline constexpr std::string_view kGapNote = "records lost here";
 
+/// A recording that begins in mid-run: behind the first of these notes stands what the devices had said before
+/// (run_so_far.hpp), behind the second what they said from then on.
+inline constexpr std::string_view kEarlierNote = "said before this part of the run";
+inline constexpr std::string_view kPartNote = "this part of the run begins";
+
 /// All decisions of one recording.
 class Journal {
  public:
@@ -73,6 +78,8 @@ class Journal {
   [[nodiscard]] const std::optional<RunIdentity>& run() const { return run_; }
   /// Bytes or decisions of this run are missing: nothing can be reproduced bit by bit.
   [[nodiscard]] bool has_gap() const { return has_gap_; }
+  /// The recording begins in mid-run: it counts other scans than the run did.
+  [[nodiscard]] bool is_part() const { return is_part_; }
   /// The newest revision to be taken before the scan; nothing where none is.
   [[nodiscard]] std::optional<std::uint32_t> revision_before(std::uint32_t scan) const;
   /// The number of the newest transient layer to be taken before the scan; nothing where none is.
@@ -97,6 +104,7 @@ class Journal {
 
   std::optional<RunIdentity> run_;
   bool has_gap_ = false;
+  bool is_part_ = false;
   std::map<std::uint32_t, std::uint32_t> revisions_;   // scan → revision
   std::map<std::uint32_t, std::uint32_t> transients_;  // scan → snapshot
   std::map<std::uint32_t, std::uint32_t> closed_;      // phase → scan

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/records/recording_decoder.hpp"
 
+#include "daemon/records/journal.hpp"
+
 namespace deltamap::daemon {
 
 using drivers::SessionMode;
@@ -21,14 +23,17 @@ void RecordingDecoder::feed(const drivers::port::ByteRecord& record, const Sinks
   if (record.note == session_note(record.port)) {
     is_robot ? (void)robot_.start(record.stamp) : (void)laser_.start(record.stamp);
   }
+  if (record.note == kEarlierNote) is_earlier_ = true;
+  if (record.note == kPartNote) is_earlier_ = false;
   if (record.bytes.empty() || record.direction == drivers::port::Direction::kOut) return;
   if (is_robot) {
     for (Odometry& odometry : robot_.on_bytes(record.bytes, record.stamp).odometry) {
-      sinks.odometry(std::move(odometry), next_odometry_++);
+      if (!is_earlier_) sinks.odometry(std::move(odometry), next_odometry_++);
     }
     return;
   }
   for (Scan& scan : laser_.on_bytes(record.bytes, record.stamp).scans) {
+    if (is_earlier_) continue;
     scan.number = next_scan_++;
     sinks.scan(std::move(scan));
   }

@@ -21,7 +21,8 @@ class RecordingDecoder {
  public:
   explicit RecordingDecoder(const Settings& settings);
 
-  /// Hands over what the record completes, in order of arrival. `odometry_number` counts from 0.
+  /// Hands over what the record completes, in order of arrival. `odometry_number` counts from 0. Of what was said
+  /// before the recorded part (kEarlierNote) nothing is handed over.
   struct Sinks {
     std::function<void(Odometry&& odometry, std::uint32_t odometry_number)> odometry;
     std::function<void(Scan&& scan)> scan;
@@ -36,6 +37,7 @@ class RecordingDecoder {
   drivers::lms200::Lms200Session laser_;
   unsigned robot_baud_ = 0;  // line speed of the newest record: what a byte's time is reckoned by
   unsigned laser_baud_ = 0;
+  bool is_earlier_ = false;  // what is fed was said before the recorded part of the run
   std::uint32_t next_odometry_ = 0;
   std::uint32_t next_scan_ = 0;
 };

@@ -34,6 +34,7 @@ std::string journal_state(const RecordedRun& recorded, const ReplayJob& job, con
 std::string why_never_obeyed(const RecordedRun& recorded) {
   const auto& run = recorded.journal.run();
   if (!run) return "none";
+  if (recorded.journal.is_part()) return "not obeyed: the recording begins in mid-run";
   if (recorded.faults.is_unchecked) return "not obeyed: whether records are missing cannot be checked";
   if (recorded.journal.has_gap()) return "not obeyed: records are missing";
   if (run->memory != 0 && !recorded.begin.begin()) return kKeptPoseIsMissing;

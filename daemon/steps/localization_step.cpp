@@ -19,6 +19,10 @@ constexpr double kKeptEachM = 1.0;  // driven between two copies of what is know
 std::optional<localization::particles::InitialPose> initial_pose(const Settings& settings, const StartMap& start) {
   if (settings.initial_pose) return localization::particles::InitialPose{*settings.initial_pose};
   if (!start.remembered) return std::nullopt;
+  if (start.believed) {
+    return localization::particles::InitialPose{*start.remembered, start.believed->position_m,
+                                                start.believed->heading_rad};
+  }
   return localization::particles::InitialPose{*start.remembered, kRememberedDeviationM, kRememberedDeviationRad, true};
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/geometry/pose_spread.hpp"
 #include "core/messages.hpp"
 #include "daemon/outputs/localization_log.hpp"
 #include "daemon/outputs/outputs.hpp"
@@ -32,6 +33,8 @@ struct StartMap {
   std::uint32_t revision = 0;
   /// map_from_robot at the end of the run before; the settings' pose takes precedence.
   std::optional<Pose2> remembered{};
+  /// Of `remembered`, where the run goes on in the midst of another: that was believed with these deviations.
+  std::optional<PoseDeviation> believed{};
   std::optional<localization::belief::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
   std::optional<localization::motion::DriveCalibration> calibration{};  ///< and of wheels and mount
   std::vector<ProvisionalRevision> provisional{};                       ///< of `map`, oldest first

@@ -2,10 +2,12 @@
 #include "daemon/steps/run_begin.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "daemon/records/journal.hpp"
+#include "daemon/settings/fingerprint.hpp"
 #include "mapping/store/map_codec.hpp"
 
 namespace deltamap::daemon {
@@ -65,19 +67,35 @@ GridGeometry geometry_in(const Json& json) {
           Point2{json.at("origin_m").at(0).get<double>(), json.at("origin_m").at(1).get<double>()}};
 }
 
+/// How far off the pose of a scan may be where the next one comes: a part of a run begins a moment after the scan.
+PoseDeviation deviation_soon_after(const LocalizationRow& row) {
+  constexpr double kMomentS = 0.2;
+  const PoseDeviation own = pose_deviation(row.covariance);
+  return {std::hypot(own.position_m, kMomentS * row.speed_m_per_s, 0.05),
+          std::hypot(own.heading_rad, kMomentS * row.turn_rate_rad_per_s, 0.02)};
+}
+
+/// What is known of the robot: its pose, and what was learned of wheels and mount. False where that is malformed.
+bool read_robot(const Json& head, StartMap& start) {
+  if (const auto pose = head.find("pose"); pose != head.end()) {
+    start.remembered = Pose2{pose->at(0).get<double>(), pose->at(1).get<double>(), pose->at(2).get<double>()};
+  }
+  if (const auto believed = head.find("believed"); believed != head.end()) {
+    start.believed = PoseDeviation{believed->at(0).get<double>(), believed->at(1).get<double>()};
+  }
+  const auto calibration = head.find("calibration");
+  if (calibration == head.end()) return true;
+  start.calibration = localization::motion::calibration_of(calibration->get<std::vector<double>>());
+  return start.calibration.has_value();
+}
+
 /// Decodes what begin_notes() writes. Throws Json::exception for a malformed head; nullopt for malformed bytes.
 std::optional<RunBegin> begin_in(const Json& head, std::string_view bytes) {
   RunBegin begin;
   begin.first_map = head.at("first_map").get<std::uint64_t>();
   begin.memory = head.at("memory").get<std::uint64_t>();
   begin.start.revision = head.at("revision").get<std::uint32_t>();
-  if (const auto pose = head.find("pose"); pose != head.end()) {
-    begin.start.remembered = Pose2{pose->at(0).get<double>(), pose->at(1).get<double>(), pose->at(2).get<double>()};
-  }
-  if (const auto calibration = head.find("calibration"); calibration != head.end()) {
-    begin.start.calibration = localization::motion::calibration_of(calibration->get<std::vector<double>>());
-    if (!begin.start.calibration) return std::nullopt;
-  }
+  if (!read_robot(head, begin.start)) return std::nullopt;
   const auto map_size = head.at("map_bytes").get<std::size_t>();
   if (map_size > bytes.size()) return std::nullopt;
   if (const auto map = head.find("map"); map != head.end()) {
@@ -133,6 +151,7 @@ std::vector<std::string> begin_notes(const RunBegin& begin) {
   }
   if (start.calibration) head["calibration"] = localization::motion::numbers_of(*start.calibration);
   if (start.remembered) head["pose"] = {start.remembered->x, start.remembered->y, start.remembered->theta};
+  if (start.believed) head["believed"] = {start.believed->position_m, start.believed->heading_rad};
   if (start.stability) {
     head["stability"] = as_json(start.stability->geometry);
     head["stability"]["cells_a_tile"] = start.stability->cells_a_tile;
@@ -143,7 +162,6 @@ std::vector<std::string> begin_notes(const RunBegin& begin) {
 }
 
 std::vector<std::string> first_notes(const Settings& settings, std::uint64_t map, const RunBegin& begin) {
-  if (settings.recording.file.empty()) return {};
   std::vector<std::string> notes{note_of(RunIdentity{settings_fingerprint(settings), map, begin.memory})};
   for (std::string& note : begin_notes(begin)) notes.push_back(std::move(note));
   for (const auto& [key, value] : changed_settings(settings)) {
@@ -151,6 +169,32 @@ std::vector<std::string> first_notes(const Settings& settings, std::uint64_t map
     if (value.find('\n') == std::string::npos) notes.push_back(std::string(kSettingHead) + key + ": " + value);
   }
   return notes;
+}
+
+Settings settings_of_a_part(Settings settings) {
+  settings.initial_pose.reset();
+  return settings;
+}
+
+Checkpoint checkpoint_of(const LocalizationStep& step, std::uint64_t first_map,
+                         std::shared_ptr<const OccupancyGrid> map) {
+  return {.row = step.row(),
+          .pose = kept_pose_of(step.row(), first_map, step.calibration()),
+          .map = std::move(map),
+          .stability = step.stability()};
+}
+
+std::vector<std::string> part_notes(const Settings& settings, const Checkpoint& from) {
+  const LocalizationRow& row = from.row;
+  RunBegin begin{.first_map = from.pose.first_map, .memory = fingerprint_of(json_text(from.pose)), .start = {}};
+  begin.start = {.map = from.map, .revision = from.pose.revision};
+  begin.start.calibration = from.pose.calibration;
+  begin.start.stability = from.stability;
+  if (from.pose.is_sure) {
+    begin.start.remembered = from.pose.map_from_robot;
+    begin.start.believed = deviation_soon_after(row);
+  }
+  return first_notes(settings_of_a_part(settings), grid_hash(*from.map), begin);
 }
 
 std::optional<std::pair<std::string, std::string>> setting_of_note(std::string_view note) {

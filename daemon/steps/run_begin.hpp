@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/records/checkpoint.hpp"
 #include "daemon/records/note_parts.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/localization_step.hpp"
@@ -27,8 +28,18 @@ struct RunBegin {
 [[nodiscard]] std::vector<std::string> begin_notes(const RunBegin& begin);
 
 /// What a run begins from: enough for a replay to obey its journal; and, for people, every setting that is not as
-/// delivered. `map`: grid_hash() of the map it begins on. Empty where nothing is recorded.
+/// delivered. `map`: grid_hash() of the map it begins on.
 [[nodiscard]] std::vector<std::string> first_notes(const Settings& settings, std::uint64_t map, const RunBegin& begin);
+
+/// What the localizer knows behind its newest scan, which was tracked on this map.
+[[nodiscard]] Checkpoint checkpoint_of(const LocalizationStep& step, std::uint64_t first_map,
+                                       std::shared_ptr<const OccupancyGrid> map);
+
+/// first_notes() of a recording that begins in mid-run: what is known at the checkpoint. Of the localizer that is the
+/// pose with its deviation, not the particles; votes and transient obstacles begin anew.
+[[nodiscard]] std::vector<std::string> part_notes(const Settings& settings, const Checkpoint& from);
+/// The settings to replay it with: the pose that the run was given is that of another time.
+[[nodiscard]] Settings settings_of_a_part(Settings settings);
 
 /// Key and value of such a setting; nothing for any other note.
 [[nodiscard]] std::optional<std::pair<std::string, std::string>> setting_of_note(std::string_view note);

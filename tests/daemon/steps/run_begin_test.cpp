@@ -30,6 +30,7 @@ RunBegin large_begin() {
   begin.start.provisional = {{5, {{{1, 2}, CellState::kFree, CellState::kOccupied}}},
                              {7, test::revision_after(*begin.start.map, 7, 3000).changes}};
   begin.start.remembered = Pose2{1.0 / 3.0, -2e-9, 3.0 / 7.0};
+  begin.start.believed = PoseDeviation{1.0 / 9.0, 2.0 / 11.0};
   begin.start.stability = std::move(stability);
   begin.start.calibration = localization::motion::DriveCalibration{
       {1.0 / 7.0, -0.02, 1e-9, 0.1}, {0.01, 0.02, 0.03, 0.04}, {0.01, -0.01, 1.0 / 300.0}, {0.001, 0.002, 0.003}};
@@ -57,6 +58,9 @@ TEST(RunBegin, SurvivesTheRecordingBitForBitWhateverItsSize) {
   EXPECT_EQ(back.memory, begin.memory);
   EXPECT_EQ(back.start.revision, 7u);
   EXPECT_EQ(*back.start.map, *begin.start.map);
+  ASSERT_TRUE(back.start.believed);
+  EXPECT_EQ(back.start.believed->position_m, begin.start.believed->position_m);
+  EXPECT_EQ(back.start.believed->heading_rad, begin.start.believed->heading_rad);
   ASSERT_EQ(back.start.provisional.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(back.start.provisional[i].number, begin.start.provisional[i].number);
