@@ -24,4 +24,13 @@ namespace deltamap {
   return text;
 }
 
+/// "20261123T004010Z", for names of files.
+[[nodiscard]] inline std::string utc_name(Timestamp time) {
+  std::string name;
+  for (const char c : utc_text(time).substr(0, 19)) {
+    if (c != '-' && c != ':') name += c;
+  }
+  return name + "Z";
+}
+
 }  // namespace deltamap

@@ -8,6 +8,8 @@
 #include "core/files/file_lock.hpp"
 #include "core/files/replace_file.hpp"
 #include "daemon/control/control_desk.hpp"
+#include "daemon/incidents/incident_keeper.hpp"
+#include "daemon/incidents/incident_list.hpp"
 #include "daemon/live/dashboard_desk.hpp"
 #include "daemon/live/page_commands.hpp"
 #include "daemon/live/pose_stream.hpp"
@@ -37,8 +39,17 @@ std::filesystem::path in_folder(const std::optional<std::filesystem::path>& fold
   return folder ? *folder / name : std::filesystem::path{};
 }
 
-Pipeline::Options with_warnings(Pipeline::Options options) {
+/// What the stages log is heard by `tail`, too.
+Pipeline::Options with_warnings(Pipeline::Options options, LogTail& tail) {
   if (!options.warn) options.warn = options.log;
+  const auto heard = [&tail](std::function<void(const std::string&)> tell, bool is_warning) {
+    return [&tail, tell = std::move(tell), is_warning](const std::string& text) {
+      tail.add(drivers::port::port_clock_now(), text, is_warning);
+      tell(text);
+    };
+  };
+  options.warn = heard(std::move(options.warn), true);
+  options.log = heard(std::move(options.log), false);
   return options;
 }
 
@@ -50,6 +61,7 @@ struct Pipeline::State {
   // --- the flow: channel, thread, channel, thread ... (capacity: what is lost where it is full) ---
 
   Settings settings;
+  LogTail log_tail;
   Options options;
   Telemetry telemetry;
 
@@ -68,6 +80,7 @@ struct Pipeline::State {
   std::unique_ptr<control::ControlDesk> control;  // requests of `deltamap ctl` → Command, status; may be null
   std::unique_ptr<DashboardDesk> page;            // what the stages show → browsers; may be null
   std::unique_ptr<PoseStream> poses;              // of each scan → programs on this machine; may be null
+  std::unique_ptr<IncidentKeeper> incidents;      // what went wrong → minutes around it, on disk; may be null
   Recorder recorder;                              // bytes, decisions, lines → disk
   IoStage io;                                     // bytes → Odometry, Scan
   LocalizationStage localization;  // Odometry, Scan, MapRevision, transients, Command → TrackedScan, DriveCommand
@@ -84,6 +97,8 @@ struct Pipeline::State {
   void write_report(const RunReport& report) const;
 
   control::ControlDesk::Wiring control_wiring();
+  std::vector<std::string> notes_of_begin() const;
+  IncidentKeeper::Options incident_options() const;
   Recorder::Options recorder_options() const;
   IoStage::Wiring io_wiring();
   LocalizationStage::Wiring localization_wiring();
@@ -99,13 +114,14 @@ struct Pipeline::State {
 
 Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
-      options{with_warnings(std::move(wanted))},
+      options{with_warnings(std::move(wanted), log_tail)},
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
       newest_lock{newest_map_lock(settings.map)},
       control{control::begun_control_desk(settings, control_wiring(), options.warn)},
       page{begun_dashboard(settings, options.start, telemetry, page_control(control.get(), io), options.log,
                            options.warn)},
       poses{begun_pose_stream(settings, telemetry, options.warn)},
+      incidents{begun_incident_keeper(incident_options(), telemetry, log_tail, {options.log, options.warn})},
       recorder{recorder_options(),
                telemetry,
                {.log = options.log, .saved = [this](const auto& outcome) { tell(outcome); }, .warn = options.warn}},
@@ -134,20 +150,44 @@ control::ControlDesk::Wiring Pipeline::State::control_wiring() {
               [this](bool goes_on, std::uint64_t ticket) {
                 return recorder.from_control().try_send(RecordOrder{goes_on, ticket});
               },
+          .mark =
+              [this](std::string words, std::uint64_t ticket) {
+                return recorder.from_control().try_send(
+                    std::make_unique<const MarkOrder>(MarkOrder{std::move(words), ticket}));
+              },
+          .incidents = [this] { return incidents_reply(settings.incidents); },
           .set_log_level = [this](LogLevel level) { return set_log_level(level); },
           .patience_s = options.control_patience_s};
+}
+
+std::vector<std::string> Pipeline::State::notes_of_begin() const {
+  return first_notes(settings, grid_hash(*options.start.map), {options.first_map, options.memory, options.start});
+}
+
+IncidentKeeper::Options Pipeline::State::incident_options() const {
+  if (settings.incidents.folder.empty()) return {};
+  return {.settings = settings,
+          .first_notes = notes_of_begin(),
+          .first_map = options.first_map,
+          .map = options.start.map,
+          .revision = options.start.revision,
+          .began = drivers::port::port_clock_now()};
 }
 
 Recorder::Options Pipeline::State::recorder_options() const {
   return {.recording = settings.recording.file,
           .bauds = {settings.robot.session.baud, settings.laser.session.baud},
           .began = drivers::port::port_clock_now(),
-          .first_notes =
-              first_notes(settings, grid_hash(*options.start.map), {options.first_map, options.memory, options.start}),
+          .first_notes = settings.recording.file.empty() ? std::vector<std::string>{} : notes_of_begin(),
           .max_gigabytes = settings.recording.max_gigabytes,
+          .ring = settings.recording.is_ring()
+                      ? std::optional{RingLimits{settings.recording.keep_gigabytes, settings.recording.keep_hours}}
+                      : std::nullopt,
+          .part_notes = [this](const Checkpoint& from) { return part_notes(settings, from); },
           .trajectory = in_folder(options.out, "trajectory.tum"),
           .localization = in_folder(options.out, "localization.csv"),
-          .memory = memory_places(settings.map.store)};
+          .memory = memory_places(settings.map.store),
+          .listener = incidents.get()};
 }
 
 IoStage::Wiring Pipeline::State::io_wiring() {

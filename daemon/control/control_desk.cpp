@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/control_desk.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "daemon/control/status_report.hpp"
@@ -11,6 +12,28 @@ namespace deltamap::daemon::control {
 using control::done_line;
 using control::error_line;
 using control::Request;
+
+namespace {
+
+/// Those that the localization thread takes as they are.
+std::optional<Command::Kind> plain_command_of(Request::Kind kind) {
+  switch (kind) {
+    case Request::Kind::kPause:
+      return Command::Kind::kPause;
+    case Request::Kind::kResume:
+      return Command::Kind::kResume;
+    case Request::Kind::kSave:
+      return Command::Kind::kSave;
+    case Request::Kind::kUndo:
+      return Command::Kind::kUndo;
+    case Request::Kind::kRollBack:
+      return Command::Kind::kRollBack;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
 
 ControlDesk::ControlDesk(const Settings& settings, Wiring wiring)
     : settings_{settings},
@@ -26,7 +49,8 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
   const control::RequestAnswer answer = control::request_of_line(line);
   if (!answer.request) return reply(error_line(answer.refused));
   const Request& request = *answer.request;
-  if (request.kind != Request::Kind::kStatus) wiring_.log("ctl: " + control::words_of(request));
+  const bool only_asks = request.kind == Request::Kind::kStatus || request.kind == Request::Kind::kIncidents;
+  if (!only_asks) wiring_.log("ctl: " + control::words_of(request));
   if (sender_is_gone && request.kind == Request::Kind::kDriveWander) {
     return wiring_.log("ctl: drive wander: not done, who asked for it waits no longer");
   }
@@ -37,22 +61,16 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
       return drive(false, request, std::move(reply));
     case Request::Kind::kDriveWander:
       return drive(true, request, std::move(reply));
-    case Request::Kind::kPause:
-      return command(Command::Kind::kPause, request, std::move(reply));
-    case Request::Kind::kResume:
-      return command(Command::Kind::kResume, request, std::move(reply));
-    case Request::Kind::kSave:
-      return command(Command::Kind::kSave, request, std::move(reply));
-    case Request::Kind::kUndo:
-      return command(Command::Kind::kUndo, request, std::move(reply));
-    case Request::Kind::kRollBack:
-      return command(Command::Kind::kRollBack, request, std::move(reply));
     case Request::Kind::kReload:
       return reload(std::move(reply));
     case Request::Kind::kRecordStart:
       return record(true, request, std::move(reply));
     case Request::Kind::kRecordStop:
       return record(false, request, std::move(reply));
+    case Request::Kind::kMark:
+      return mark(request, std::move(reply));
+    case Request::Kind::kIncidents:
+      return reply(wiring_.incidents());
     case Request::Kind::kLogLevel:
       return reply(with_log_level(request.log_level));
     case Request::Kind::kRelocalize:
@@ -60,6 +78,8 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
         return refuse(request, "that pose lies outside the map", reply);
       }
       return command(Command::Kind::kRelocalize, request, std::move(reply));
+    default:
+      if (const auto kind = plain_command_of(request.kind)) command(*kind, request, std::move(reply));
   }
 }
 
@@ -90,6 +110,12 @@ void ControlDesk::drive(bool may_drive, const Request& request, control::Server:
 void ControlDesk::record(bool goes_on, const Request& request, control::Server::Reply reply) {
   const std::uint64_t ticket = next_ticket_++;
   if (!wiring_.record(goes_on, ticket)) return refuse(request, "the disk is too slow: try again", reply);
+  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
+}
+
+void ControlDesk::mark(const Request& request, control::Server::Reply reply) {
+  const std::uint64_t ticket = next_ticket_++;
+  if (!wiring_.mark(request.words, ticket)) return refuse(request, "the disk is too slow: try again", reply);
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
 }
 

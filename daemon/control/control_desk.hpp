@@ -31,9 +31,11 @@ class ControlDesk {
     std::function<void(bool may_drive, std::uint64_t ticket)> let_drive;
     std::function<void(const std::string&)> log;
     std::function<LiveSettings::Outcome()> reload;
-    std::function<bool(bool goes_on, std::uint64_t ticket)> record;  ///< false: too busy
-    std::function<bool(LogLevel)> set_log_level;                     ///< false: this run's log has no levels
-    double patience_s = 1.0;                                         ///< then a sender is told that the daemon is busy
+    std::function<bool(bool goes_on, std::uint64_t ticket)> record;       ///< false: too busy
+    std::function<bool(std::string words, std::uint64_t ticket)> mark{};  ///< false: too busy
+    std::function<std::string()> incidents{};                             ///< the reply that lists them
+    std::function<bool(LogLevel)> set_log_level;                          ///< false: this run's log has no levels
+    double patience_s = 1.0;  ///< then a sender is told that the daemon is busy
   };
   /// Listens from now on. Throws sockets::AlreadyServed, or std::runtime_error with one line that names the socket.
   ControlDesk(const Settings& settings, Wiring wiring);
@@ -57,6 +59,7 @@ class ControlDesk {
   void answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply);
   void refuse(const control::Request& request, const std::string& why, const control::Server::Reply& reply) const;
   void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
+  void mark(const control::Request& request, control::Server::Reply reply);
   void record(bool goes_on, const control::Request& request, control::Server::Reply reply);
   void reload(control::Server::Reply reply);
   [[nodiscard]] std::string reloaded() const;

@@ -17,7 +17,8 @@ using Kind = Request::Kind;
 constexpr double kFarthest_m = 1e6;
 constexpr double kLargest_deg = 1e6;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 5> kPlainCommands{{{"status", Kind::kStatus},
+constexpr std::array<std::pair<std::string_view, Kind>, 6> kPlainCommands{{{"status", Kind::kStatus},
+                                                                           {"incidents", Kind::kIncidents},
                                                                            {"pause", Kind::kPause},
                                                                            {"resume", Kind::kResume},
                                                                            {"save", Kind::kSave},
@@ -61,6 +62,17 @@ RequestAnswer record_in(const Json& json) {
   return {std::nullopt, "'record' needs the mode start or stop"};
 }
 
+RequestAnswer mark_in(const Json& json) {
+  const auto words = json.find("words");
+  Request request{Kind::kMark, {}};
+  if (words == json.end()) return {request, ""};
+  const bool is_line = words->is_string() && words->get_ref<const std::string&>().size() <= kLongestWords &&
+                       words->get_ref<const std::string&>().find('\n') == std::string::npos;
+  if (!is_line) return {std::nullopt, "'mark' needs words: one line of at most 400 bytes"};
+  request.words = words->get<std::string>();
+  return {request, ""};
+}
+
 RequestAnswer log_level_in(const Json& json) {
   const auto level = json.find("level");
   const auto known =
@@ -86,6 +98,7 @@ std::string_view name_of(Kind kind) {
     if (order == kind) return name;
   }
   if (kind == Kind::kLogLevel) return "log-level";
+  if (kind == Kind::kMark) return "mark";
   if (kind == Kind::kRecordStart || kind == Kind::kRecordStop) return "record";
   return kind == Kind::kRelocalize ? "relocalize" : "drive";
 }
@@ -106,6 +119,7 @@ RequestAnswer request_of_line(std::string_view line) {
   }
   if (name == "relocalize") return relocalization_in(json);
   if (name == "record") return record_in(json);
+  if (name == "mark") return mark_in(json);
   if (name == "log-level") return log_level_in(json);
   if (name == "drive") return drive_in(json);
   return {std::nullopt, "unknown command '" + name + "'"};
@@ -125,12 +139,13 @@ std::string line_of(const Request& request) {
     json["heading_deg"] = degrees(request.map_from_robot.theta);
   }
   if (is_map_order(request.kind)) json["revision"] = request.revision;
+  if (request.kind == Kind::kMark) json["words"] = request.words;
   if (request.kind == Kind::kLogLevel) json["level"] = name_of(request.log_level);
   if (request.kind == Kind::kRecordStart) json["mode"] = "start";
   if (request.kind == Kind::kRecordStop) json["mode"] = "stop";
   if (request.kind == Kind::kDriveOff) json["mode"] = "off";
   if (request.kind == Kind::kDriveWander) json["mode"] = "wander";
-  return json.dump();
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string done_line(std::string_view message, bool doubt) {
@@ -153,6 +168,7 @@ std::string words_of(const Request& request) {
   if (request.kind == Kind::kRecordStop) return "record stop";
   if (request.kind == Kind::kDriveOff) return "drive off";
   if (request.kind == Kind::kDriveWander) return "drive wander";
+  if (request.kind == Kind::kMark) return request.words.empty() ? "mark" : "mark \"" + request.words + "\"";
   if (request.kind == Kind::kLogLevel) return "log-level " + std::string(name_of(request.log_level));
   if (is_map_order(request.kind)) return std::string(name_of(request.kind)) + " " + std::to_string(request.revision);
   if (request.kind != Kind::kRelocalize) return std::string(name_of(request.kind));

@@ -15,6 +15,7 @@
 namespace deltamap::daemon::control {
 
 inline constexpr std::size_t kLongestLine = 4096;  ///< bytes of a request with its line end
+inline constexpr std::size_t kLongestWords = 400;  ///< bytes of a mark's words
 
 struct Request {
   enum class Kind : std::uint8_t {
@@ -28,6 +29,8 @@ struct Request {
     kRollBack,     ///< the map is M_`revision` again
     kRecordStart,  ///< a recording that was stopped goes on
     kRecordStop,   ///< the recording stops; the daemon goes on
+    kMark,         ///< a person wants this moment kept as an incident, with `words`
+    kIncidents,    ///< which are kept
     kLogLevel,     ///< the log shows `log_level` and above
     kDriveOff,
     kDriveWander
@@ -35,6 +38,7 @@ struct Request {
   Pose2 map_from_robot{};                ///< kRelocalize
   std::uint32_t revision = 0;            ///< kUndo, kRollBack
   LogLevel log_level = LogLevel::kInfo;  ///< kLogLevel
+  std::string words{};                   ///< kMark: one line, at most kLongestWords bytes
   friend bool operator==(const Request&, const Request&) = default;
 };
 

@@ -22,10 +22,10 @@ constexpr const char* kFull = "it has reached recording.max_gigabytes";
 
 /// Renames the recording of the last run: after a crash the service starts again at once, and the recording of the
 /// crash must survive. Returns an error where the disk is full or read-only; throws StartError for any other reason.
-std::error_code keep_previous(const std::filesystem::path& recording) {
+std::error_code keep_previous(const std::filesystem::path& recording, bool is_ring) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(recording, error)) return {};
-  const std::filesystem::path previous = previous_recording(recording);
+  const std::filesystem::path previous = is_ring ? place_of_earlier(recording) : previous_recording(recording);
   std::filesystem::rename(recording, previous, error);
   const int reason = error.value();
   if (!error || reason == EROFS || reason == ENOSPC || reason == EDQUOT) return error;
@@ -55,40 +55,60 @@ LiveRecording::LiveRecording(Options options, Telemetry& telemetry, const Retryi
       telemetry_{telemetry},
       output_{"recording", options_.file, telemetry.outputs, warn},
       log_{warn},
-      bauds_{options_.bauds.robot, options_.bauds.laser},
+      so_far_{options_.bauds},
+      part_began_{options_.began},
       last_stamp_{options_.began} {
   options_.file = or_start_error([&] { return file_behind(options_.file); });
   (void)judged_recording_place(options_.file);
   lock_ = or_start_error([&] { return lock_of_file(options_.file); });
-  is_previous_kept_ = !keep_previous(options_.file);
+  for (const std::string& note : options_.first_notes) beginning_.push_back(note_at(last_stamp_, note));
+  is_previous_kept_ = !keep_previous(options_.file, options_.ring.has_value());
   attempt(options_.began, [this] { go_on(); });
 }
 
 void LiveRecording::begin() {
   if (!lock_) lock_ = lock_of_file(options_.file);  // the folder may have been read-only at the start
   if (!is_previous_kept_) {
-    if (const auto error = keep_previous(options_.file)) throw std::system_error(error, options_.file.string());
+    if (const auto error = keep_previous(options_.file, options_.ring.has_value()))
+      throw std::system_error(error, options_.file.string());
     is_previous_kept_ = true;
   }
   try {
-    writer_.emplace(options_.file, drivers::port::FirstBauds{bauds_[0], bauds_[1]});
-    for (const std::string& note : options_.first_notes) writer_->write(note_at(last_stamp_, note));
+    writer_.emplace(options_.file, so_far_.bauds());
+    for (const ByteRecord& record : beginning_) writer_->write(record);
     writer_->flush();
   } catch (const std::exception&) {
     writer_.reset();  // the next attempt begins the file anew: without its first notes it says nothing of its run
     throw;
   }
-  options_.first_notes.clear();
+  beginning_ = {};
+}
+
+/// The full part is closed, and kept as the recording of an earlier run is. Where the disk has no room for the next
+/// one, that begins later.
+void LiveRecording::begin_part(const Checkpoint& from, Timestamp now) {
+  if (!options_.ring || ended_ || stopped_) return;
+  if (part_began_ == options_.began && !beginning_.empty()) return;  // the run's first part is not on disk yet
+  if (writer_ && !is_part_full(*options_.ring, writer_->size_bytes(), seconds(now - part_began_))) return;
+  if (writer_) {
+    attempt(now, [this] { writer_->close(); });
+    writer_.reset();
+    is_previous_kept_ = false;
+  }
+  part_began_ = now;
+  beginning_ = so_far_.beginning(options_.part_notes(from), last_stamp_);
+  attempt(now, [this] { begin(); });
+  drop_oldest_parts(options_.file, *options_.ring);
 }
 
 void LiveRecording::go_on() {
   if (!writer_) begin();
   if (!has_gap_) return;
   writer_->write(note_at(last_stamp_, kGapNote));
-  for (const PortId port : {PortId::kRobot, PortId::kLaser}) {
-    writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds_[static_cast<std::size_t>(port)]), port));
-  }
-  if (!pause_note_.empty()) writer_->write(note_at(last_stamp_, pause_note_));
+  const drivers::port::FirstBauds bauds = so_far_.bauds();
+  writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds.robot), PortId::kRobot));
+  writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds.laser), PortId::kLaser));
+  if (!so_far_.pause_note().empty()) writer_->write(note_at(last_stamp_, so_far_.pause_note()));
   writer_->flush();
   has_gap_ = false;
 }
@@ -100,27 +120,17 @@ void LiveRecording::attempt(Timestamp now, const std::function<void()>& write) {
   if (writer_) telemetry_.recorded_bytes.set(writer_->size_bytes());
 }
 
-void LiveRecording::remember(const ByteRecord& record) {
-  if (record.note.empty()) return;
-  const auto baud = drivers::port::baud_of_note(record.note);
-  if (baud) bauds_[static_cast<std::size_t>(record.port)] = *baud;
-  const auto decision = decision_of_note(record.note);
-  const bool is_pause =
-      decision && (decision->kind == Decision::Kind::kPaused || decision->kind == Decision::Kind::kResumed);
-  if (is_pause) pause_note_ = record.note;
-}
-
 void LiveRecording::write(const ByteRecord& record, Timestamp now) {
   if (ended_) return;
   last_stamp_ = record.stamp;
-  if (stopped_) return remember(record);
+  if (stopped_) return so_far_.read(record);
   attempt(now, [&] {
     go_on();
     writer_->write(record);
   });
-  remember(record);
+  so_far_.read(record);
   if (!output_.works()) return output_.count_lost();
-  if (static_cast<double>(writer_->size_bytes()) <= options_.max_gigabytes * 1e9) return;
+  if (options_.ring || static_cast<double>(writer_->size_bytes()) <= options_.max_gigabytes * 1e9) return;
   log_(std::string("the recording ends: ").append(kFull));
   ended_ = true;
   output_.end(now, kFull);

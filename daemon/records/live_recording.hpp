@@ -4,14 +4,17 @@
 // cannot reproduce the run. An operator may stop it and start it again, with such a gap between.
 #pragma once
 
-#include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/files/file_lock.hpp"
 #include "daemon/outputs/retrying_output.hpp"
+#include "daemon/records/checkpoint.hpp"
+#include "daemon/records/recording_parts.hpp"
+#include "daemon/records/run_so_far.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 #include "drivers/port/byte_log.hpp"
 
@@ -24,16 +27,21 @@ namespace deltamap::daemon {
 class LiveRecording {
  public:
   struct Options {
-    std::filesystem::path file;  ///< an older file is kept as NAME.previous.pcapng
+    std::filesystem::path file;  ///< an older file is kept as NAME.previous.pcapng, or as a part of the ring
     drivers::port::FirstBauds bauds;
     std::vector<std::string> first_notes;  ///< what the run begins from
     Timestamp began;
     double max_gigabytes = 0.0;
+    std::optional<RingLimits> ring{};  ///< then max_gigabytes is not looked at
+    /// Of a ring: what a part begins from.
+    std::function<std::vector<std::string>(const Checkpoint&)> part_notes{};
   };
   /// Throws FileInUse where another daemon records there, StartError where this user can have no file.
   LiveRecording(Options options, Telemetry& telemetry, const RetryingOutput::Warn& warn);
 
   void write(const drivers::port::ByteRecord& record, Timestamp now);
+  /// Of a ring: a new part begins here where the one before is full.
+  void begin_part(const Checkpoint& from, Timestamp now);
   /// Records never came here: the channel was full.
   void note_loss() { has_gap_ = true; }
   /// An operator wants no more of it: what was recorded is handed to the disk, and what comes is left out. Answers what
@@ -52,17 +60,15 @@ class LiveRecording {
   /// Throws std::runtime_error where it cannot.
   void go_on();
   void attempt(Timestamp now, const std::function<void()>& write);
-  /// What must be said again behind a gap.
-  void remember(const drivers::port::ByteRecord& record);
-
   Options options_;
   Telemetry& telemetry_;
   RetryingOutput output_;
   std::function<void(const std::string&)> log_;
   std::optional<FileLock> lock_;
   std::optional<drivers::port::ByteLogWriter> writer_;
-  std::array<unsigned, 2> bauds_;  // in force, by PortId
-  std::string pause_note_;         // the newest of the operator's "mapping paused", "mapping resumed"
+  RunSoFar so_far_;
+  std::vector<drivers::port::ByteRecord> beginning_;  // of the file, while it is not on disk
+  Timestamp part_began_;
   Timestamp last_stamp_;
   bool is_previous_kept_ = false;
   bool has_gap_ = false;

@@ -29,6 +29,7 @@ using drivers::port::ByteRecord;
 
 Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
     : hooks_{with_warnings(std::move(hooks))},
+      listener_{options.listener},
       memory_{options.memory, telemetry.outputs, hooks_.warn},
       now_{options.began},
       last_stamp_{options.began} {
@@ -37,7 +38,9 @@ Recorder::Recorder(const Options& options, Telemetry& telemetry, Hooks hooks)
                                               .bauds = options.bauds,
                                               .first_notes = options.first_notes,
                                               .began = options.began,
-                                              .max_gigabytes = options.max_gigabytes},
+                                              .max_gigabytes = options.max_gigabytes,
+                                              .ring = options.ring,
+                                              .part_notes = options.part_notes},
                        telemetry, hooks_.warn);
   }
   const auto begin = [&](std::optional<LiveLines>& lines, const char* name, const std::filesystem::path& file) {
@@ -60,6 +63,7 @@ void Recorder::run() {
     found = drain(from_awareness_) || found;
     found = drain(from_map_) || found;
     found = drain(from_control_) || found;
+    if (listener_) listener_->look(drivers::port::port_clock_now());
     if (closed && !found) break;
     if (const auto now = std::chrono::steady_clock::now(); now - last_flush >= kFlushPeriod) {
       flush();
@@ -72,6 +76,7 @@ void Recorder::run() {
   if (localization_) localization_->close(now_);
   memory_.close(now_);
   if (recording_) recording_->close(now_);
+  if (listener_) listener_->close(now_);
 }
 
 void Recorder::close() { closed_.store(true, std::memory_order_release); }
@@ -99,6 +104,7 @@ void Recorder::write(RecorderItem&& item) {
     if (trajectory_) trajectory_->write(tum_line(*point), now_);
   } else if (const auto* row = std::get_if<std::unique_ptr<const LocalizationRow>>(&item)) {
     if (localization_) localization_->write(csv_line(**row), now_);
+    if (listener_) listener_->hear(**row, now_);
   } else if (const auto* pose = std::get_if<std::unique_ptr<const KeptPose>>(&item)) {
     memory_.keep(**pose, now_);
   } else if (const auto* stability = std::get_if<std::unique_ptr<const KeptStability>>(&item)) {
@@ -107,6 +113,11 @@ void Recorder::write(RecorderItem&& item) {
     save(**order);
   } else if (const auto* wanted = std::get_if<RecordOrder>(&item)) {
     obey(*wanted);
+  } else if (const auto* mark = std::get_if<std::unique_ptr<const MarkOrder>>(&item)) {
+    keep(**mark);
+  } else if (auto* checkpoint = std::get_if<std::shared_ptr<const Checkpoint>>(&item)) {
+    if (recording_) recording_->begin_part(**checkpoint, now_);
+    if (listener_) listener_->hear(std::move(*checkpoint), now_);
   } else {
     const auto& line = std::get<LogLine>(item);
     (line.is_warning ? hooks_.warn : hooks_.log)(line.text);
@@ -129,8 +140,16 @@ void Recorder::obey(const RecordOrder& order) {
   if (hooks_.saved) hooks_.saved(outcome);
 }
 
+void Recorder::keep(const MarkOrder& mark) {
+  const control::CommandOutcome outcome =
+      listener_ ? listener_->hear(mark, drivers::port::port_clock_now())
+                : control::CommandOutcome{mark.ticket, false, "'incidents.folder' is not set: nothing is kept"};
+  if (hooks_.saved) hooks_.saved(outcome);
+}
+
 void Recorder::record(const ByteRecord& record) {
   if (recording_) recording_->write(record, now_);
+  if (listener_) listener_->hear(record, now_);
 }
 
 void Recorder::flush() {
@@ -138,8 +157,11 @@ void Recorder::flush() {
   if (trajectory_) trajectory_->flush(now_);
   if (localization_) localization_->flush(now_);
   memory_.retry(now_);
+  const std::uint64_t all = refused();
+  const bool lost_some = all != std::exchange(refused_before_, all);
+  if (lost_some && listener_) listener_->hear_of_loss();
   if (!recording_) return;
-  if (const std::uint64_t all = refused(); all != std::exchange(refused_before_, all)) recording_->note_loss();
+  if (lost_some) recording_->note_loss();
   recording_->flush(now_);
 }
 

@@ -16,6 +16,7 @@
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/records/journal.hpp"
 #include "daemon/records/live_recording.hpp"
+#include "daemon/records/run_listener.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "daemon/telemetry/log_line.hpp"
 #include "daemon/telemetry/stage.hpp"
@@ -32,10 +33,10 @@ struct RecordOrder {
   std::uint64_t ticket = 0;
 };
 
-using RecorderItem =
-    std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint, std::unique_ptr<const LocalizationRow>,
-                 std::unique_ptr<const KeptPose>, std::unique_ptr<const KeptStability>,
-                 std::unique_ptr<const SaveOrder>, RecordOrder, LogLine>;
+using RecorderItem = std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint,
+                                  std::unique_ptr<const LocalizationRow>, std::unique_ptr<const KeptPose>,
+                                  std::unique_ptr<const KeptStability>, std::unique_ptr<const SaveOrder>, RecordOrder,
+                                  LogLine, std::shared_ptr<const Checkpoint>, std::unique_ptr<const MarkOrder>>;
 
 /// One sender's way to the recorder.
 using RecorderInput = Channel<RecorderItem>;
@@ -48,9 +49,12 @@ class Recorder {
     Timestamp began;                       ///< now
     std::vector<std::string> first_notes;  ///< what the run begins from
     double max_gigabytes = 0.0;
+    std::optional<RingLimits> ring{};  ///< of the recording
+    std::function<std::vector<std::string>(const Checkpoint&)> part_notes{};
     std::filesystem::path trajectory{};    ///< empty: none
     std::filesystem::path localization{};  ///< localization.csv; empty: none
     MemoryPlaces memory{};                 ///< empty: nothing is kept
+    RunListener* listener = nullptr;       ///< outlives the recorder; null: nobody
   };
   struct Hooks {
     std::function<void(const std::string&)> log;                  ///< a short line
@@ -83,10 +87,12 @@ class Recorder {
   void record(const drivers::port::ByteRecord& record);
   void save(const SaveOrder& order);
   void obey(const RecordOrder& order);
+  void keep(const MarkOrder& mark);
   /// Once a second: everything to the disk, and another attempt where one has failed.
   void flush();
 
   Hooks hooks_;
+  RunListener* listener_;
   Pulse pulse_;
   std::optional<LiveRecording> recording_;
   std::optional<LiveLines> trajectory_;

@@ -63,7 +63,19 @@ struct NavigationSettings {
 
 struct RecordingSettings {
   std::string file;            ///< pcapng; empty: not recorded
-  double max_gigabytes = 8.0;  ///< the recording ends there, the daemon goes on
+  double max_gigabytes = 8.0;  ///< the recording ends there, the daemon goes on; a ring does not
+  // A ring of parts, of which the oldest go. 0: no such rule; both 0: one file, no ring.
+  double keep_gigabytes = 0.0;
+  double keep_hours = 0.0;
+
+  [[nodiscard]] bool is_ring() const { return !file.empty() && (keep_gigabytes > 0.0 || keep_hours > 0.0); }
+};
+
+/// The minutes around each loss, fault, safety stop and operator's mark.
+struct IncidentSettings {
+  std::string folder;             ///< empty: nothing is kept
+  std::uint32_t max_count = 100;  ///< the oldest that is not pinned goes
+  double max_gigabytes = 2.0;     ///< of all of them
 };
 
 /// What outlives the run, beside map.store; a replay does not look at it.
@@ -102,7 +114,13 @@ struct Settings {
   PosesSettings poses;
   DashboardSettings dashboard;
   RecordingSettings recording;
+  IncidentSettings incidents;
 };
+
+/// A recording of this run may begin in its midst: the localizer is asked now and then what it knows.
+[[nodiscard]] inline bool has_checkpoints(const Settings& settings) {
+  return !settings.incidents.folder.empty() || settings.recording.is_ring();
+}
 
 /// Every key, in the order of config/default.yaml. The keys refer to `settings`, which must outlive them.
 [[nodiscard]] std::vector<SettingKey> keys_of(Settings& settings);

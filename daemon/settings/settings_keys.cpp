@@ -210,6 +210,27 @@ void add_dashboard(DashboardSettings& dashboard, Keys& keys) {
                "whether the page may command as `deltamap ctl` does; what moves the robot needs a token as well"));
 }
 
+void add_recording(RecordingSettings& recording, Keys& keys) {
+  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
+  add(text_key("recording.file", recording.file, "pcapng recording of both ports; empty: none"));
+  add(number_key("recording.max_gigabytes", recording.max_gigabytes, "GB", 0.001, 10000.0,
+                 "size at which the recording ends, where it is no ring; the daemon goes on"));
+  add(number_key("recording.keep_gigabytes", recording.keep_gigabytes, "GB", 0.0, 10000.0,
+                 "makes the recording a ring of parts: the oldest go beyond this size; 0: no such rule"));
+  add(number_key("recording.keep_hours", recording.keep_hours, "h", 0.0, 100000.0,
+                 "makes the recording a ring of parts: those older than this go; 0: no such rule"));
+}
+
+void add_incidents(IncidentSettings& incidents, Keys& keys) {
+  const auto add = [&keys](SettingKey key) { keys.push_back(not_for_results(std::move(key))); };
+  add(text_key("incidents.folder", incidents.folder,
+               "folder in which incidents are kept, each in a folder of its own; empty: none"));
+  add(whole_key("incidents.max_count", incidents.max_count, "", 1, 100'000,
+                "incidents at most; the oldest that is not pinned goes"));
+  add(number_key("incidents.max_gigabytes", incidents.max_gigabytes, "GB", 0.01, 10000.0,
+                 "size of all incidents at most; the oldest that is not pinned goes"));
+}
+
 std::optional<Contradiction> contradiction_in(const DashboardSettings& dashboard) {
   const auto is_loopback = dashboard::is_loopback(dashboard.address);
   if (!is_loopback) {
@@ -254,10 +275,8 @@ std::vector<SettingKey> keys_of(Settings& settings) {
       text_key("poses.socket", settings.poses.socket,
                "Unix socket that tells other programs the pose of every scan, a line of JSON each; empty: none")));
   add_dashboard(settings.dashboard, keys);
-  keys.push_back(not_for_results(
-      text_key("recording.file", settings.recording.file, "pcapng recording of both ports; empty: none")));
-  keys.push_back(not_for_results(number_key("recording.max_gigabytes", settings.recording.max_gigabytes, "GB", 0.001,
-                                            10000.0, "size at which the recording ends; the daemon goes on")));
+  add_recording(settings.recording, keys);
+  add_incidents(settings.incidents, keys);
   return keys;
 }
 

@@ -34,6 +34,7 @@ const std::vector<SettingSection>& setting_sections() {
       {"poses", "the pose of every scan, for other programs"},
       {"dashboard", "the live page for browsers"},
       {"recording", "the recording of both ports"},
+      {"incidents", "the minutes around each loss, refusal, safety stop, device fault and operator's mark"},
   };
   return kSections;
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "daemon/steps/run_begin.hpp"
 #include "drivers/port/port_clock.hpp"
 
 namespace deltamap::daemon {
@@ -40,7 +41,8 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
       first_map_{first_map},
       map_{start.map},
       memory_{settings.memory},
-      is_kept_{!settings.map.store.empty()} {
+      is_kept_{!settings.map.store.empty()},
+      wants_checkpoints_{has_checkpoints(settings)} {
   if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
     (void)wiring_.recorder.try_send(refused_start_line());
   }
@@ -257,6 +259,10 @@ void LocalizationStage::keep_now_and_then(Timestamp time) {
     pose_kept_ = time;
     keep_pose();
   }
+  if (wants_checkpoints_ && is_due(checked_, time, kCheckpointPeriodS)) {
+    checked_ = time;
+    send_checkpoint();
+  }
   if (!stability_kept_) stability_kept_ = time;  // the first write comes a period later
   if (is_due(stability_kept_, time, kStabilityPeriods * memory_.pose_period_s)) {
     stability_kept_ = time;
@@ -274,15 +280,10 @@ void LocalizationStage::keep_stability() {
       KeptStability{.first_map = first_map_, .revision = step_.row().revision, .record = step_.stability()}));
 }
 
-KeptPose LocalizationStage::pose_to_keep() const {
-  const LocalizationRow& row = step_.row();
-  return {.first_map = first_map_,
-          .revision = row.revision,
-          .time = row.time,
-          .map_from_robot = row.map_from_robot,
-          .covariance = row.covariance,
-          .is_sure = row.is_sure(),
-          .calibration = step_.calibration()};
+void LocalizationStage::send_checkpoint() {
+  (void)wiring_.recorder.try_send(std::make_shared<const Checkpoint>(checkpoint_of(step_, first_map_, map_)));
 }
+
+KeptPose LocalizationStage::pose_to_keep() const { return kept_pose_of(step_.row(), first_map_, step_.calibration()); }
 
 }  // namespace deltamap::daemon

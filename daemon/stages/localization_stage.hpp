@@ -72,6 +72,7 @@ class LocalizationStage {
   void keep_now_and_then(Timestamp time);
   void keep_pose();
   void keep_stability();
+  void send_checkpoint();
   [[nodiscard]] KeptPose pose_to_keep() const;
   void note(const Decision& decision) { (void)wiring_.recorder.try_send(note_of(decision)); }
 
@@ -88,6 +89,8 @@ class LocalizationStage {
   std::shared_ptr<const TransientObstacles> transients_;  // may be null
   MemorySettings memory_;
   bool is_kept_;                        // there is a store to keep it beside
+  bool wants_checkpoints_;              // a recording may begin in mid-run
+  std::optional<Timestamp> checked_;    // when the newest checkpoint was sent
   std::optional<Timestamp> pose_kept_;  // nothing until the first scan
   std::optional<Timestamp> stability_kept_;
   std::optional<std::uint64_t> relocalized_;  // the ticket of a pose that the next scan tells the fit of

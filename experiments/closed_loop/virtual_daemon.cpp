@@ -7,7 +7,7 @@
 #include "daemon/driving/drive_desk.hpp"
 #include "daemon/replay/sequential_run.hpp"
 #include "daemon/steps/pilot_step.hpp"
-#include "daemon/telemetry/telemetry.hpp"
+#include "daemon/steps/run_begin.hpp"
 #include "drivers/lms200/session.hpp"
 #include "drivers/pioneer/session.hpp"
 #include "experiments/closed_loop/virtual_link.hpp"
@@ -19,6 +19,7 @@ using drivers::lms200::Lms200Output;
 using drivers::lms200::Lms200Session;
 using drivers::pioneer::PioneerOutput;
 using drivers::pioneer::PioneerSession;
+using drivers::port::PortId;
 
 constexpr double kMapDelayS = 0.2;  // from a set of scans to its revision
 
@@ -41,13 +42,18 @@ struct VirtualDaemon::Process {
   explicit Process(VirtualDaemon& its_owner)
       : owner{its_owner},
         kept{{its_owner.params_.kept_file, "/dev/robot"}},
-        robot{PioneerSession{robot_params(its_owner.params_.settings, kept), drivers::SessionMode::kLive},
+        listener{its_owner.params_.listener ? its_owner.params_.listener(telemetry) : nullptr},
+        robot{PortId::kRobot,
+              PioneerSession{robot_params(its_owner.params_.settings, kept), drivers::SessionMode::kLive},
               {[this](std::span<const std::uint8_t> bytes, unsigned baud) { owner.write_to_robot(bytes, baud); },
-               [this](PioneerOutput& out) { take(out); }}},
+               [this](PioneerOutput& out) { take(out); },
+               [this](std::string note) { record(PortId::kRobot, {}, std::move(note)); }}},
         laser{
+            PortId::kLaser,
             Lms200Session{its_owner.params_.settings.laser.session, drivers::SessionMode::kLive},
             {[this](std::span<const std::uint8_t> bytes, unsigned baud) { owner.devices_.send_to_laser(bytes, baud); },
-             [this](Lms200Output& out) { take(out); }}},
+             [this](Lms200Output& out) { take(out); },
+             [this](std::string note) { record(PortId::kLaser, {}, std::move(note)); }}},
         desk{true,
              its_owner.params_.settings.navigation.safety,
              {.session = robot.session(),
@@ -59,6 +65,7 @@ struct VirtualDaemon::Process {
         pilot{its_owner.params_.settings} {
     if (its_owner.params_.map == nullptr) return;
     const daemon::StartMap start{.map = its_owner.params_.map};
+    first_map = grid_hash(*its_owner.params_.map);
     run.emplace(its_owner.params_.settings, start, nullptr, kMapDelayS);
   }
 
@@ -73,6 +80,7 @@ struct VirtualDaemon::Process {
     }
     owner.log_.insert(owner.log_.end(), out.output.log.begin(), out.output.log.end());
     desk.set_port_open(robot.is_open());
+    telemetry.robot_up.set(desk.robot_is_connected());
     desk.obey_permission(now());
   }
 
@@ -84,6 +92,23 @@ struct VirtualDaemon::Process {
       owner.last_scan_ = scan;
       desk.take(word_on(std::move(scan)), now());
     }
+    telemetry.laser_up.set(laser.is_open() && laser.session().is_streaming());
+  }
+
+  void record(PortId port, const std::vector<std::uint8_t>& bytes, std::string note = {}) {
+    if (!listener || (bytes.empty() && note.empty())) return;
+    listener->hear({.port = port, .stamp = now(), .bytes = bytes, .note = std::move(note)}, now());
+  }
+
+  /// What the recorder thread is told of a scan.
+  void tell_listener(const TrackedScan& tracked) {
+    if (!listener) return;
+    listener->hear(run->localization().row(), now());
+    if (checked && seconds(tracked.scan.time - *checked) < daemon::kCheckpointPeriodS) return;
+    checked = tracked.scan.time;
+    listener->hear(std::make_shared<const daemon::Checkpoint>(
+                       daemon::checkpoint_of(run->localization(), first_map, tracked.estimate.map)),
+                   now());
   }
 
   /// What the localization thread says of a scan.
@@ -109,6 +134,7 @@ struct VirtualDaemon::Process {
     TrackedScan tracked = run->observe(std::move(scan));
     telemetry.localized.add(1);
     owner.estimate_ = tracked.estimate;
+    tell_listener(tracked);
     return tracked;
   }
 
@@ -121,12 +147,19 @@ struct VirtualDaemon::Process {
   }
 
   void follow_changes(const TrackedScan& tracked) {
-    if (const auto request = run->look_for_changes(tracked)) (void)run->update_map(*request);
+    const auto request = run->look_for_changes(tracked);
+    const auto result = request ? run->update_map(*request) : std::nullopt;
+    if (!result) return;
+    if (result->revision)
+      telemetry.newest_revision.set(result->revision->number);
+    else
+      telemetry.refused.add(1);
   }
 
   VirtualDaemon& owner;
   daemon::KeptDrive kept;
   daemon::Telemetry telemetry;
+  std::unique_ptr<daemon::RunListener> listener;  // may be null
   VirtualLink<PioneerSession, PioneerOutput> robot;
   VirtualLink<Lms200Session, Lms200Output> laser;
   daemon::DriveDesk desk;
@@ -134,6 +167,8 @@ struct VirtualDaemon::Process {
   std::optional<daemon::SequentialRun> run;
   Odometry newest;
   std::uint32_t scans = 0;
+  std::uint64_t first_map = 0;
+  std::optional<Timestamp> checked;  // when the newest checkpoint was told
   Timestamp next_tick{};
 };
 
@@ -150,6 +185,8 @@ void VirtualDaemon::start() {
 }
 
 void VirtualDaemon::kill() { process_.reset(); }
+
+daemon::RunListener* VirtualDaemon::listener() const { return process_ ? process_->listener.get() : nullptr; }
 
 bool VirtualDaemon::is_alive() const { return process_ != nullptr; }
 
@@ -199,12 +236,15 @@ void VirtualDaemon::turn() {
   if (!process_) return;
   if (line_is_cut_ || answers_are_cut_ || adapter_is_out_) from_robot.clear();
   const Timestamp now = devices_.now();
+  if (process_->robot.is_open()) process_->record(PortId::kRobot, from_robot);
+  if (process_->laser.is_open()) process_->record(PortId::kLaser, from_laser);
   process_->robot.turn(from_robot, !adapter_is_out_, now);
   process_->laser.turn(from_laser, true, now);
   if (now < process_->next_tick) return;
   process_->next_tick = now + duration_from_seconds(daemon::kSafetyPeriodS);
   process_->desk.set_port_open(process_->robot.is_open());
   process_->desk.tick(now);
+  if (process_->listener) process_->listener->look(now);
 }
 
 }  // namespace deltamap::experiments

@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "core/grid/occupancy_grid.hpp"
+#include "daemon/records/run_listener.hpp"
 #include "daemon/settings/settings.hpp"
+#include "daemon/telemetry/telemetry.hpp"
 #include "navigation/safety.hpp"
 #include "simulation/simulation.hpp"
 
@@ -25,6 +27,8 @@ class VirtualDaemon {
     std::shared_ptr<const OccupancyGrid> map{};        ///< M_0; null: no localizer, it wanders without a pose
     std::filesystem::path kept_file{};                 ///< of the drive switch; empty: not kept
     std::function<DriveCommand(const Scan&)> pilot{};  ///< in place of wandering
+    /// Who hears in the recorder's place, of each process; empty: nobody.
+    std::function<std::unique_ptr<daemon::RunListener>(daemon::Telemetry&)> listener{};
   };
   VirtualDaemon(simulation::Simulation& devices, Params params);
   ~VirtualDaemon();
@@ -61,6 +65,8 @@ class VirtualDaemon {
   [[nodiscard]] std::optional<localization::motion::DriveCalibration> calibration() const;
   /// What ctl status tells planners.
   [[nodiscard]] bool may_drive_by_pose() const;
+  /// Of the process that is alive; null: nobody listens.
+  [[nodiscard]] daemon::RunListener* listener() const;
   /// Lines of its log, of all processes so far.
   [[nodiscard]] const std::vector<std::string>& log() const { return log_; }
 

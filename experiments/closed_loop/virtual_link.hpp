@@ -5,9 +5,12 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "core/time.hpp"
+#include "daemon/records/recording_decoder.hpp"
+#include "drivers/port/byte_record.hpp"
 #include "drivers/port/reconnect.hpp"
 #include "drivers/session.hpp"
 
@@ -18,13 +21,16 @@ class VirtualLink {
  public:
   struct Hooks {
     std::function<void(std::span<const std::uint8_t>, unsigned baud)> write;
-    std::function<void(Output&)> on_messages;  ///< after all that the session answers
+    std::function<void(Output&)> on_messages;         ///< after all that the session answers
+    std::function<void(std::string note)> on_note{};  ///< a session begins, the line changes its speed; may be empty
   };
-  VirtualLink(Session session, Hooks hooks) : session_{std::move(session)}, hooks_{std::move(hooks)} {}
+  VirtualLink(drivers::port::PortId id, Session session, Hooks hooks)
+      : id_{id}, session_{std::move(session)}, hooks_{std::move(hooks)} {}
 
   /// The port is open.
   void start(Timestamp now) {
     try_again_at_.reset();
+    if (hooks_.on_note) hooks_.on_note(daemon::session_note(id_));
     handle(session_.start(now), now);
   }
 
@@ -32,7 +38,7 @@ class VirtualLink {
     if (!is_open()) return;  // no port to write to
     for (const drivers::PortRequest& request : out.output.requests) {
       if (request.kind == drivers::PortRequest::Kind::kWrite) hooks_.write(request.bytes, baud_);
-      if (request.kind == drivers::PortRequest::Kind::kSetBaud) baud_ = request.baud;
+      if (request.kind == drivers::PortRequest::Kind::kSetBaud) set_baud(request.baud);
     }
     wake_at_ = out.output.wake_at;
     if (out.output.failed) lose(*out.output.failed, now);
@@ -59,11 +65,15 @@ class VirtualLink {
   [[nodiscard]] bool is_open() const { return !try_again_at_; }
 
  private:
+  void set_baud(unsigned baud) {
+    if (std::exchange(baud_, baud) != baud && hooks_.on_note) hooks_.on_note(drivers::port::baud_note(baud));
+  }
   void lose(const std::string& reason, Timestamp now) {
     wake_at_.reset();
     try_again_at_ = reconnect_.failed(reason, now).try_again_at;
   }
 
+  drivers::port::PortId id_;
   Session session_;
   Hooks hooks_;
   unsigned baud_ = 9600;

@@ -48,7 +48,7 @@ for file in /lib/systemd/system/deltamap.service /lib/udev/rules.d/60-deltamap.r
   holds "$file" is 'root:root 644' "$file"
 done
 holds "Wireshark finds both protocols" is 'root:root 644' /usr/lib/*/wireshark/plugins/deltamap.lua
-for folder in /var/lib/deltamap /var/lib/deltamap/maps /var/lib/deltamap/recordings; do
+for folder in /var/lib/deltamap /var/lib/deltamap/maps /var/lib/deltamap/recordings /var/lib/deltamap/incidents; do
   holds "$folder" is 'deltamap:deltamap 750' "$folder"
 done
 holds "the configuration is a conffile" grep -q '^ /etc/deltamap/deltamap.yaml ' <(dpkg-query -W -f='${Conffiles}\n' deltamap)

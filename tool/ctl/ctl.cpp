@@ -31,6 +31,7 @@ struct CtlOptions {
   std::string mode;
   std::string watch;  // seconds; empty: one
   std::string level;
+  std::vector<std::string> words;
   std::uint32_t revision = 0;
   bool as_json = false;
 };
@@ -116,6 +117,16 @@ void add_map_order(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options, co
   });
 }
 
+void add_mark(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options) {
+  CLI::App& mark = *ctl.add_subcommand("mark", "keep the minutes around this moment as an incident");
+  mark.add_option("words", options->words, "what has happened, for whoever looks at it later");
+  mark.callback([options] {
+    Request request{Kind::kMark, {}};
+    for (const std::string& word : options->words) request.words += (request.words.empty() ? "" : " ") + word;
+    ask(*options, request);
+  });
+}
+
 }  // namespace
 
 void add_ctl(CLI::App& app) {
@@ -133,6 +144,8 @@ void add_ctl(CLI::App& app) {
   add_map_order(ctl, options, "undo", Kind::kUndo, "take revision K back and keep what came later");
   add_map_order(ctl, options, "rollback", Kind::kRollBack, "make the map what revision K was; nothing is lost");
   add_log_level(ctl, options);
+  add_mark(ctl, options);
+  add_plain(ctl, options, "incidents", Kind::kIncidents, "which incidents are kept");
   CLI::App& record = *ctl.add_subcommand("record", "stop the recording of this run, or let it go on behind a gap");
   record.add_option("mode", options->mode, "start or stop")->required()->check(CLI::IsMember({"start", "stop"}));
   record.callback([options] {

@@ -9,8 +9,8 @@ namespace {
 using Kind = Request::Kind;
 
 TEST(Request, EveryRequestSurvivesTheSocket) {
-  for (const Kind kind : {Kind::kStatus, Kind::kPause, Kind::kResume, Kind::kSave, Kind::kReload, Kind::kRecordStart,
-                          Kind::kRecordStop, Kind::kDriveOff, Kind::kDriveWander}) {
+  for (const Kind kind : {Kind::kStatus, Kind::kIncidents, Kind::kMark, Kind::kPause, Kind::kResume, Kind::kSave,
+                          Kind::kReload, Kind::kRecordStart, Kind::kRecordStop, Kind::kDriveOff, Kind::kDriveWander}) {
     const Request request{kind, {}};
     const RequestAnswer answer = request_of_line(line_of(request));
     ASSERT_TRUE(answer.request) << line_of(request) << answer.refused;
@@ -28,6 +28,8 @@ TEST(Request, EveryRequestSurvivesTheSocket) {
     ASSERT_TRUE(back.request) << line_of(level) << back.refused;
     EXPECT_EQ(*back.request, level);
   }
+  const Request mark{.kind = Kind::kMark, .words = "\"pallet\" fell, 3 °"};
+  EXPECT_EQ(request_of_line(line_of(mark)).request, mark);
   for (const Kind kind : {Kind::kUndo, Kind::kRollBack}) {
     for (const std::uint32_t revision : {0u, 7u, 4294967295u}) {
       const Request order{.kind = kind, .revision = revision};
@@ -39,7 +41,7 @@ TEST(Request, EveryRequestSurvivesTheSocket) {
 }
 
 TEST(Request, WhatIsWrongIsSaidInOneLine) {
-  const auto refusal = [](const char* line) {
+  const auto refusal = [](const std::string& line) {
     const RequestAnswer answer = request_of_line(line);
     EXPECT_FALSE(answer.request) << line;
     EXPECT_EQ(answer.refused.find('\n'), std::string::npos);
@@ -67,6 +69,9 @@ TEST(Request, WhatIsWrongIsSaidInOneLine) {
   }
   EXPECT_EQ(refusal(R"({"command":"record"})"), "'record' needs the mode start or stop");
   EXPECT_EQ(refusal(R"({"command":"record","mode":1})"), "'record' needs the mode start or stop");
+  for (const std::string& words : {std::string("1"), std::string("\"two\\nlines\""), '"' + std::string(401, 'a') + '"'})
+    EXPECT_EQ(refusal(R"({"command":"mark","words":)" + words + "}"),
+              "'mark' needs words: one line of at most 400 bytes");
   EXPECT_EQ(refusal(R"({"command":"drive"})"), "'drive' needs the mode off or wander");
   EXPECT_EQ(refusal(R"({"command":"drive","mode":"patrol"})"), "'drive' needs the mode off or wander");
 }
@@ -83,6 +88,8 @@ TEST(Request, IsLoggedAsAPersonWouldTypeIt) {
   EXPECT_EQ(words_of({Kind::kDriveOff, {}}), "drive off");
   EXPECT_EQ(words_of({.kind = Kind::kRollBack, .revision = 3}), "rollback 3");
   EXPECT_EQ(words_of({Kind::kSave, {}}), "save");
+  EXPECT_EQ(words_of({.kind = Kind::kMark, .words = "pallet fell"}), "mark \"pallet fell\"");
+  EXPECT_EQ(words_of({Kind::kMark, {}}), "mark");
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// One incident on disk. Its folder comes into being whole: it is written aside, synced and renamed. What comes after is
+// appended to its recording, and the page is replaced whole: whenever the daemon is killed, there is an incident that
+// replays, or none.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/grid/occupancy_grid.hpp"
+#include "daemon/incidents/incident.hpp"
+#include "daemon/settings/settings.hpp"
+#include "drivers/port/byte_log.hpp"
+
+namespace deltamap::daemon {
+
+class IncidentFolder {
+ public:
+  using TakeRecord = std::function<void(const drivers::port::ByteRecord&)>;
+  struct Content {
+    Incident incident;  ///< its name is made here
+    Settings settings;  ///< to replay it with
+    std::shared_ptr<const OccupancyGrid> map;
+    drivers::port::FirstBauds bauds;
+    std::string log;
+    std::function<void(const TakeRecord&)> records;  ///< all up to now
+  };
+  /// Throws std::runtime_error naming file and reason; nothing is there then.
+  IncidentFolder(const std::filesystem::path& parent, Content content);
+
+  // These throw std::runtime_error naming the file; what is on disk stays whole.
+
+  void write(const drivers::port::ByteRecord& record) { writer_->write(record); }
+  void flush() { writer_->flush(); }
+  void add(const IncidentEvent& event);
+  /// Its last record came at this time.
+  void finish(Timestamp to, const std::string& log);
+
+  [[nodiscard]] const Incident& incident() const { return incident_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+
+ private:
+  void write_page() const;
+
+  Incident incident_;
+  std::filesystem::path folder_;
+  std::unique_ptr<drivers::port::ByteLogWriter> writer_;
+};
+
+/// What a daemon that was killed has left half written.
+void remove_drafts(const std::filesystem::path& parent);
+
+/// The oldest incidents that are not pinned go until the others are within the limits; `newest` stays in any case. A
+/// line for each that has gone.
+[[nodiscard]] std::vector<std::string> within_limits(const IncidentSettings& settings, const std::string& newest);
+
+}  // namespace deltamap::daemon

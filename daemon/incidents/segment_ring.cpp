@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/incidents/segment_ring.hpp"
+
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace deltamap::daemon {
+
+namespace fs = std::filesystem;
+
+SegmentRing::SegmentRing(fs::path folder, double keep_s) : folder_{std::move(folder)}, keep_s_{keep_s} {
+  std::error_code error;
+  fs::remove_all(folder_, error);
+  fs::create_directories(folder_, error);
+  if (error) throw std::runtime_error(folder_.string() + ": cannot be made: " + error.message());
+}
+
+SegmentRing::~SegmentRing() {
+  std::error_code ignored;
+  writer_.reset();
+  fs::remove_all(folder_, ignored);
+}
+
+void SegmentRing::begin_segment(Timestamp now, const RunSoFar& so_far, std::shared_ptr<const Checkpoint> checkpoint) {
+  const fs::path file = folder_ / (std::to_string(next_number_) + ".pcapng");
+  auto next = std::make_unique<drivers::port::ByteLogWriter>(file, so_far.bauds());
+  if (writer_) writer_->flush();
+  writer_ = std::move(next);
+  ++next_number_;
+  segments_.push_back({file, now, so_far, std::move(checkpoint)});
+  while (segments_.size() > 1 && seconds(now - segments_[1].began) >= keep_s_) {
+    std::error_code ignored;
+    fs::remove(segments_.front().file, ignored);
+    segments_.pop_front();
+  }
+}
+
+void SegmentRing::write(const drivers::port::ByteRecord& record) {
+  if (writer_) writer_->write(record);
+}
+
+const SegmentRing::Segment& SegmentRing::segment_at(Timestamp time) const {
+  const Segment* found = &segments_.front();
+  for (const Segment& segment : segments_) {
+    if (segment.began <= time) found = &segment;
+  }
+  return *found;
+}
+
+void SegmentRing::read_from(const Segment& segment, const std::function<void(const drivers::port::ByteRecord&)>& take) {
+  writer_->flush();
+  bool is_wanted = false;
+  for (const Segment& one : segments_) {
+    is_wanted = is_wanted || &one == &segment;
+    if (!is_wanted) continue;
+    drivers::port::ByteLogReader reader{one.file};
+    while (const auto record = reader.next()) take(*record);
+  }
+}
+
+}  // namespace deltamap::daemon

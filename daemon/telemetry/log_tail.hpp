@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The newest lines of the log, for whoever tells later what happened. Any thread.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <string>
+
+#include "core/time.hpp"
+#include "core/utc_text.hpp"
+
+namespace deltamap::daemon {
+
+class LogTail {
+ public:
+  static constexpr std::size_t kMostBytes = 128 * 1024;
+
+  void add(Timestamp time, const std::string& text, bool is_warning) {
+    const std::scoped_lock lock{mutex_};
+    lines_.push_back({time, utc_text(time) + (is_warning ? " warn " : " info ") + text + "\n"});
+    bytes_ += lines_.back().text.size();
+    for (; bytes_ > kMostBytes && lines_.size() > 1; lines_.pop_front()) bytes_ -= lines_.front().text.size();
+  }
+  /// A line each, with its time; oldest first.
+  [[nodiscard]] std::string since(Timestamp time) const {
+    const std::scoped_lock lock{mutex_};
+    std::string all;
+    for (const Line& line : lines_) {
+      if (line.time >= time) all += line.text;
+    }
+    return all;
+  }
+
+ private:
+  struct Line {
+    Timestamp time;
+    std::string text;
+  };
+  mutable std::mutex mutex_;
+  std::deque<Line> lines_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace deltamap::daemon
