@@ -33,6 +33,7 @@ int run_tool(int argc, const char* const* argv) {
   add_calibrate_motion(calibrate);
   add_decode(app);
   add_export(app);
+  add_incident(app);
   add_info(app);
   add_replay(app);
   add_sweep(app);

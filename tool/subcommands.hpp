@@ -13,6 +13,7 @@ void add_compare(CLI::App& app);
 void add_ctl(CLI::App& app);
 void add_decode(CLI::App& app);
 void add_export(CLI::App& app);
+void add_incident(CLI::App& app);
 void add_info(CLI::App& app);
 void add_score(CLI::App& app);
 void add_sim(CLI::App& app);

@@ -15,11 +15,13 @@
 #include <vector>
 
 #include "core/files/scratch_folder.hpp"
+#include "daemon/incidents/incident.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/replay_start.hpp"
 #include "tool/subcommands.hpp"
 #include "tool/told_grid.hpp"
 #include "tool/view/run_folder.hpp"
+#include "tool/view/view.hpp"
 #include "tool/view/view_desk.hpp"
 
 namespace deltamap::tool {
@@ -118,6 +120,29 @@ std::optional<std::string> replayed(const daemon::ReplayJob& job, ViewDesk& desk
   }
 }
 
+/// Replays the job into the page.
+void view_replay(daemon::ReplayJob job, const std::string& name, std::uint16_t port) {
+  const ScratchFolder scratch;
+  job.out = scratch.path() / "run";
+  auto given = std::make_shared<const OccupancyGrid>(told_grid(job.map));
+  const daemon::RecordedRun recorded = daemon::recorded_run(job);
+  const daemon::StartMap start = daemon::replay_start(recorded, job, std::move(given)).start;
+  for (const std::string& line : recorded.faults.lines()) warn(line);
+  ViewDesk desk{{.kind = "recording",
+                 .name = name,
+                 .settings = job.settings,
+                 .map = start.map,
+                 .revision = start.revision,
+                 .first_revision = start.revision,
+                 .store = job.out / "map_store.sqlite"},
+                port};
+  job.watch.scan = [&desk](const daemon::ReplayedScan& scan) { desk.show(scan); };
+  job.watch.change = [&desk](const MapRevision* revision, const daemon::ChangeNote& note) {
+    desk.show(revision, note);
+  };
+  serve(desk, [&job](ViewDesk& to, const std::atomic<bool>& stops) { return replayed(job, to, stops); });
+}
+
 /// The settings of the replay: nobody steers it.
 daemon::Settings settings_of(const ViewOptions& options) {
   std::vector<std::string> overrides = options.overrides;
@@ -133,26 +158,8 @@ void view_recording(const ViewOptions& options) {
   }
   daemon::ReplayJob job = options.job;
   job.settings = settings_of(options);
-  const ScratchFolder scratch;
   job.recording = options.target;
-  job.out = scratch.path() / "run";
-  auto given = std::make_shared<const OccupancyGrid>(told_grid(job.map));
-  const daemon::RecordedRun recorded = daemon::recorded_run(job);
-  const daemon::StartMap start = daemon::replay_start(recorded, job, std::move(given)).start;
-  for (const std::string& line : recorded.faults.lines()) warn(line);
-  ViewDesk desk{{.kind = "recording",
-                 .name = options.target.filename().string(),
-                 .settings = job.settings,
-                 .map = start.map,
-                 .revision = start.revision,
-                 .first_revision = start.revision,
-                 .store = job.out / "map_store.sqlite"},
-                options.port};
-  job.watch.scan = [&desk](const daemon::ReplayedScan& scan) { desk.show(scan); };
-  job.watch.change = [&desk](const MapRevision* revision, const daemon::ChangeNote& note) {
-    desk.show(revision, note);
-  };
-  serve(desk, [&job](ViewDesk& to, const std::atomic<bool>& stops) { return replayed(job, to, stops); });
+  view_replay(std::move(job), options.target.filename().string(), options.port);
 }
 
 void view(const ViewOptions& options) {
@@ -163,6 +170,7 @@ void view(const ViewOptions& options) {
                              std::generic_category().message(error ? error.value() : ENOENT));
   }
   const std::string extension = options.target.extension().string();
+  if (fs::exists(options.target / daemon::kIncidentFacts)) return view_incident(options.target, options.port);
   if (fs::is_directory(status)) return view_folder(options);
   if (extension == ".yaml" || extension == ".yml" || extension == ".pgm") return view_map(options);
   view_recording(options);
@@ -170,10 +178,26 @@ void view(const ViewOptions& options) {
 
 }  // namespace
 
+daemon::ReplayJob incident_job(const std::filesystem::path& folder) {
+  daemon::ReplayJob job;
+  job.recording = folder / daemon::kIncidentRecording;
+  job.map = folder / daemon::kIncidentMap;
+  job.settings = daemon::read_settings(folder / daemon::kIncidentSettings, {});
+  return job;
+}
+
+void view_incident(const fs::path& folder, std::uint16_t port) {
+  const daemon::Incident incident = daemon::read_incident(folder);
+  daemon::ReplayJob job = incident_job(folder);
+  job.settings.dashboard.control = false;
+  view_replay(std::move(job), incident.name, port);
+}
+
 void add_view(CLI::App& app) {
   auto* command = app.add_subcommand("view", "a run's folder, a recording or a map in a browser, to be scrubbed");
   auto options = std::make_shared<ViewOptions>();
-  command->add_option("what", options->target, "folder of a run (--out), recording (pcapng), or map (YAML)")
+  command
+      ->add_option("what", options->target, "folder of a run (--out) or an incident, recording (pcapng), or map (YAML)")
       ->required();
   command->add_option("--port", options->port, "of the page, on loopback; 0 (as delivered): any that is free");
   command->add_option("--map", options->job.map, "of a recording: M_0, map_server YAML");
