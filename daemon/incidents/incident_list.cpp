@@ -92,6 +92,11 @@ std::string line_of(const StoredIncident& stored) {
 
 std::string json_of(const std::vector<StoredIncident>& all) { return line(list_of(all)); }
 
+std::string incidents_json(const fs::path& folder) {
+  const auto all = folder.empty() ? std::vector<StoredIncident>{} : incidents_in(folder);
+  return line({{"folder", folder.string()}, {"incidents", list_of(all)}});
+}
+
 std::string incidents_reply(const IncidentSettings& settings) {
   if (settings.folder.empty())
     return line({{"ok", false}, {"error", "'incidents.folder' is not set: nothing is kept"}});

@@ -27,6 +27,8 @@ struct StoredIncident {
 
 /// A JSON array of them: name, kind, time, words, pose, bytes, pinned, complete.
 [[nodiscard]] std::string json_of(const std::vector<StoredIncident>& all);
+/// {"folder":…,"incidents":[…]} of a folder; both empty where none are kept.
+[[nodiscard]] std::string incidents_json(const std::filesystem::path& folder);
 /// A line for `deltamap ctl incidents`: {"ok":true,"message":…,"incidents":[…]}; {"ok":false,"error":…} where none are
 /// kept.
 [[nodiscard]] std::string incidents_reply(const IncidentSettings& settings);

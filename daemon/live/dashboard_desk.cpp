@@ -6,6 +6,7 @@
 #include "daemon/control/request.hpp"
 #include "daemon/control/status_report.hpp"
 #include "daemon/dashboard/access.hpp"
+#include "daemon/live/incident_answers.hpp"
 #include "daemon/live/live_messages.hpp"
 #include "daemon/live/metrics_text.hpp"
 #include "daemon/live/page_answers.hpp"
@@ -69,6 +70,7 @@ Answer DashboardDesk::answer(const Request& request) {
   if (path == "/api/status") return {.type = kJson, .body = status_json() + "\n"};
   if (path == "/api/history") return {.type = kJson, .body = history_json(board_) + "\n"};
   if (path == "/api/scan") return newest_scan();
+  if (path.starts_with("/api/incidents")) return incidents_answer(settings_.incidents.folder, path);
   if (path.starts_with("/api/revision/")) return history_.answer(path);
   for (const char* form : {"png", "yaml", "pgm"}) {
     if (path == std::string("/api/map.") + form) return map_answer(board_.map(), form);

@@ -23,6 +23,7 @@ export class Control {
     by_id("stop").addEventListener("click", () => this.stop());
     by_id("save").addEventListener("click", () => this.row.run({ command: "save" }, "saving …"));
     by_id("pause").addEventListener("click", () => this.pause());
+    by_id("mark").addEventListener("click", () => this.row.run({ command: "mark" }, "keeping this moment …"));
     by_id("record").addEventListener("click", () => this.record());
     by_id("unlock").addEventListener("click", () => ask_token(this.row));
     by_id("relocalize").addEventListener("click", () => (this.relocalize.is_on ? this.relocalize.end() : this.relocalize.begin()));

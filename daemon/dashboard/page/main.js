@@ -7,6 +7,7 @@ import { Connection } from "./connection.js";
 import { Control } from "./control.js";
 import { explain } from "./glossary.js";
 import { History } from "./history.js";
+import { Incidents } from "./incidents.js";
 import { draw_delta, draw_scale_bar, draw_wish, fill_delta_legend, fill_legend, has_place, LAYERS } from "./layers.js";
 import { MapView } from "./map_view.js";
 import { show_link, show_pose, show_run, show_status } from "./panels.js";
@@ -102,6 +103,7 @@ function pick(change, button) {
 
 const control = new Control(view, model);
 const history = new History(view, model, control.row);
+const incidents = new Incidents(() => is_live && !run.is_open);
 const run = new Run(view, model, (message) => connection.take(message), (time) => {
   charts.until = time;
   charts.draw_soon();
@@ -123,6 +125,7 @@ function note(text) {
 }
 
 let pose_came = 0;
+let is_live = false;
 
 /// A robot that is silent is not where it was. The past of a run is never old.
 function look_at_age() {
@@ -139,6 +142,7 @@ const on = {
   link(link) {
     show_link(link, model.run);
     control.link(link);
+    is_live = link === "live";
     if (link === "lost") note(model.run ? "The program that shows this run has ended." : "No connection to the daemon. What is shown is old; trying again …");
     if (link === "live") note("");
   },
@@ -151,6 +155,7 @@ const on = {
     charts.method = hello.method;
     charts.instant = null;
     control.allow(hello.control);
+    if (!hello.run) incidents.look();
     history.allow_undo(Boolean(hello.control));
     history.close();
     model.samples.length = model.changes.length = 0;  // the stream begins with the past

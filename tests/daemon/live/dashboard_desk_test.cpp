@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "core/files/grid_file.hpp"
+#include "daemon/incidents/incident_list.hpp"
 #include "tests/support/bytes/live_decoding.hpp"
 #include "tests/support/daemon/pipeline_fixture.hpp"
 #include "tests/support/daemon/web_client.hpp"
@@ -79,6 +80,31 @@ class DashboardDeskTest : public testing::Test {
   std::unique_ptr<DashboardDesk> desk_;
   std::thread thread_;
 };
+
+TEST_F(DashboardDeskTest, ListsIncidentsAndTellsOneInWords) {
+  const test::TemporaryFolder folder;
+  start();
+  EXPECT_EQ(got("/api/incidents").body, "{\"folder\":\"\",\"incidents\":[]}\n");
+  EXPECT_EQ(got("/api/incidents/x").status, 404);
+  desk_->stop();
+  thread_.join();
+  Incident incident;
+  incident.name = "20261130T030012Z-lost";
+  incident.events = {{IncidentKind::kLost, timestamp_from_ns(1'764'471'612'000'000'000), "the pose was lost"}};
+  std::filesystem::create_directories(folder.path() / incident.name);
+  std::ofstream(folder.path() / incident.name / kIncidentFacts) << json_text(incident);
+  settings_.incidents.folder = folder.path();
+  start();
+  const Json list = Json::parse(got("/api/incidents").body);
+  ASSERT_EQ(list["incidents"].size(), 1u) << list;
+  EXPECT_EQ(list["incidents"][0]["kind"], "lost");
+  const WebAnswer words = got("/api/incidents/" + incident.name);
+  EXPECT_EQ(words.status, 200);
+  EXPECT_EQ(words.body, words_of(incident));
+  for (const char* elsewhere :
+       {"/api/incidents/", "/api/incidents/..", "/api/incidents/../../etc/passwd", "/api/incidentsx"})
+    EXPECT_EQ(got(elsewhere).status, 404) << elsewhere;
+}
 
 TEST_F(DashboardDeskTest, ThePageAndItsFilesComeWithTheirTypes) {
   start();

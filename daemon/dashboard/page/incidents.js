@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The incidents that the daemon has kept, newest first, each with a link to its page in words.
+
+import { fetched } from "./history.js";
+import { date_and_clock } from "./time_text.js";
+
+const PERIOD_MS = 10000;
+const MOST = 20;
+
+const by_id = (id) => document.getElementById(id);
+
+function item_of(incident) {
+  const item = document.createElement("li");
+  const link = document.createElement("a");
+  link.href = `/api/incidents/${incident.name}`;
+  link.target = "_blank";
+  link.rel = "noopener";
+  link.textContent = incident.kind;
+  const time = document.createElement("time");
+  time.textContent = date_and_clock(Date.parse(incident.time) / 1000);
+  const what = document.createElement("span");
+  what.className = "what";
+  what.textContent = incident.words;
+  item.append(link, time, what);
+  return item;
+}
+
+/// {folder, incidents}; an empty folder: none are kept.
+export function show_incidents({ folder, incidents }) {
+  by_id("incidents-box").hidden = by_id("mark").hidden = !folder;
+  by_id("incidents-count").textContent = incidents.length ? `${incidents.length} kept` : "none yet";
+  by_id("incidents").replaceChildren(...incidents.slice(-MOST).reverse().map(item_of));
+}
+
+/// Asks now and then while the page is looked at and `wants` says so.
+export class Incidents {
+  constructor(wants) {
+    this.wants = wants;
+    setInterval(() => this.look(), PERIOD_MS);
+  }
+
+  async look() {
+    if (document.hidden || !this.wants()) return;
+    try {
+      show_incidents(await (await fetched("/api/incidents")).json());
+    } catch { /* the page tells already that the daemon cannot be reached */ }
+  }
+}
