@@ -226,6 +226,22 @@ Finding socket_finding(const std::string& about, const fs::path& socket) {
   }
 }
 
+/// A daemon that keeps no incidents still does its work, but two daemons do not share a folder.
+Finding incidents_finding(const fs::path& folder) {
+  try {
+    if (const std::string why = why_no_folder_for(folder / "any"); !why.empty())
+      return {Level::kWarning, "incidents",
+              folder.string() + ": " + why + ": a start would go on without it, and try again"};
+    std::error_code error;
+    if (fs::is_directory(folder, error)) require_lockable_folder(folder);
+    return {Level::kOk, "incidents", folder.string()};
+  } catch (const FileInUse& error) {
+    return {Level::kError, "incidents", error.what()};
+  } catch (const std::system_error& error) {
+    return {Level::kWarning, "incidents", error.what()};
+  }
+}
+
 /// Opens the page's port for a moment, as a start would, and closes it again.
 Finding page_finding(const DashboardSettings& page) {
   try {
@@ -294,6 +310,7 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   if (const std::string& file = settings.recording.file; !file.empty()) {
     findings.push_back(place_finding("recording", file, file, [&] { return judged_recording_place(file); }));
   }
+  if (!settings.incidents.folder.empty()) findings.push_back(incidents_finding(settings.incidents.folder));
   if (!out.empty()) {
     findings.push_back(
         place_finding("out", out, fs::path(out) / "report.json", [&] { return judged_out_place(out, settings); }));

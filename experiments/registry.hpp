@@ -21,6 +21,7 @@ namespace deltamap::experiments {
 [[nodiscard]] Experiment merge_experiment();
 [[nodiscard]] Experiment gate_experiment();
 [[nodiscard]] Experiment carried_experiment();
+[[nodiscard]] Experiment incidents_experiment();
 [[nodiscard]] Experiment shifted_hall_experiment();
 [[nodiscard]] Experiment unseen_experiment();
 [[nodiscard]] Experiment first_map_experiment();

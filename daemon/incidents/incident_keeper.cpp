@@ -39,9 +39,11 @@ IncidentKeeper::IncidentKeeper(Options options, Telemetry& telemetry, const LogT
       output_{"incidents", options_.settings.incidents.folder, telemetry.outputs, hooks_.warn},
       so_far_{{options_.settings.robot.session.baud, options_.settings.laser.session.baud}},
       last_flush_{options_.began} {
-  std::error_code told_below;
-  std::filesystem::create_directories(options_.settings.incidents.folder, told_below);
-  if (!told_below) lock_ = lock_of_folder(options_.settings.incidents.folder);
+  try {
+    std::filesystem::create_directories(options_.settings.incidents.folder);
+    lock_ = lock_of_folder(options_.settings.incidents.folder);
+  } catch (const std::system_error&) {  // told by the first attempt
+  }
   (void)output_.attempt(options_.began, [this] { begin_ring(options_.began); });
 }
 

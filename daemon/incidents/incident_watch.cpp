@@ -41,6 +41,8 @@ std::optional<IncidentKind> kind_of(StopReason reason) {
     case StopReason::kStalled:
     case StopReason::kWheelsSpin:
     case StopReason::kDisobeys:
+    case StopReason::kPoseWrong:
+    case StopReason::kPoseUnfit:
       return IncidentKind::kSafetyStop;
     case StopReason::kControllerFault:
     case StopReason::kLowBattery:

@@ -46,7 +46,7 @@ class RunWatch {
   bool streak_is_told_ = false;
 };
 
-/// What such a stop is; nothing for those that driving brings with it, and for those of the pose.
+/// What such a stop is; nothing for those that driving brings with it, and for a pose that is lost or searched for.
 [[nodiscard]] std::optional<IncidentKind> kind_of(navigation::StopReason reason);
 
 }  // namespace deltamap::daemon

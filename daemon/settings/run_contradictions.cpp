@@ -78,6 +78,7 @@ std::vector<NamedFile> files_of(const Settings& settings, const std::string& fil
   add("recording.file", settings.recording.file, true);
   if (const std::string& recording = settings.recording.file; !recording.empty())
     files.push_back({"recording.file", "recording of the run before", previous_recording(recording), true});
+  add("incidents.folder", settings.incidents.folder, true);
   return files;
 }
 

@@ -194,6 +194,17 @@ TEST_F(CheckConfig, IsOfOneMindWithTheStartOnPlacesThatCannotBe) {
   EXPECT_EQ(finding("recording").level, Level::kError) << finding("recording").text;
   settings_.recording.file.clear();
 
+  settings_.incidents.folder = folder_.path() / "made/later";
+  EXPECT_EQ(finding("incidents").level, Level::kOk);
+  std::ofstream(folder_.path() / "file") << "x";
+  settings_.incidents.folder = folder_.path() / "file/incidents";
+  EXPECT_EQ(finding("incidents").level, Level::kWarning) << finding("incidents").text;
+  settings_.incidents.folder = folder_.path() / "taken";
+  fs::create_directory(settings_.incidents.folder);
+  const auto lock = lock_of_folder(settings_.incidents.folder);
+  EXPECT_EQ(finding("incidents").level, Level::kError) << finding("incidents").text;
+  settings_.incidents.folder.clear();
+
   settings_.control.socket = folder_.path() / std::string(150, 's');
   EXPECT_EQ(finding("control").level, Level::kWarning) << "a start has no socket";
   EXPECT_NE(finding("control").text.find("File name too long"), std::string::npos) << finding("control").text;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // `deltamap incident`: what the daemon has kept of bad moments, listed, told, replayed, looked at and packed.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -12,10 +14,10 @@
 
 #include "core/counted.hpp"
 #include "core/files/scratch_folder.hpp"
-#include "core/files/text_of_file.hpp"
+#include "core/utc_text.hpp"
 #include "daemon/incidents/incident_list.hpp"
+#include "daemon/replay/incident_replay.hpp"
 #include "tool/draft.hpp"
-#include "tool/incident/incident_replay.hpp"
 #include "tool/incident/tar_file.hpp"
 #include "tool/progress.hpp"
 #include "tool/subcommands.hpp"
@@ -62,24 +64,37 @@ void show(const IncidentOptions& options) {
   std::cout << (options.as_json ? json_text(incident) : words_of(incident));
 }
 
+/// "the live run: lost at …; the replay: the same 0.1 s later"
+std::string words_of_replay(const daemon::Incident& incident, const daemon::IncidentReplay& replay) {
+  const std::string met = "the replay lost its pose " + counted(replay.losses.size(), "time") + ", ";
+  const daemon::IncidentEvent* live = loss_of(incident);
+  if (live == nullptr) return met + "the live run did not: " + std::string(name_of(incident.events.front().kind));
+  const std::string began = "the live run: " + std::string(name_of(live->kind)) + " at " + utc_text(live->time) + "; ";
+  if (!replay.late_s) return began + met + "never of this kind";
+  char text[96];
+  (void)std::snprintf(text, sizeof text, "the replay: the same %.1f s %s", std::abs(*replay.late_s),
+                      *replay.late_s < 0.0 ? "earlier" : "later");
+  return began + text;
+}
+
 void replay(const IncidentOptions& options) {
   const fs::path folder = folder_of(options, options.incident);
   const daemon::Incident incident = daemon::read_incident(folder);
   const ScratchFolder scratch;
-  daemon::ReplayJob job = incident_job(folder);
+  daemon::ReplayJob job = daemon::incident_job(folder);
   job.out = options.out.empty() ? scratch.path() / "run" : options.out;
   job.warn = [](const std::string& line) { std::cerr << "deltamap: warning: " << line << '\n'; };
-  IncidentReplay done;
+  daemon::IncidentReplay done;
   {
     constexpr std::uint64_t kSteps = 1000;
     Progress progress{"replay", kSteps};
-    done = replayed_incident(incident, job, [&](double share) {
+    done = daemon::replayed_incident(incident, job, [&](double share) {
       progress.show(static_cast<std::uint64_t>(share * static_cast<double>(kSteps)));
       return true;
     });
   }
   if (!options.as_json) {
-    std::cout << words_of(incident, done) << '\n';
+    std::cout << words_of_replay(incident, done) << '\n';
     return;
   }
   nlohmann::ordered_json json{{"name", incident.name}, {"losses", done.losses.size()}, {"began", done.report.began}};

@@ -16,6 +16,7 @@
 
 #include "core/files/scratch_folder.hpp"
 #include "daemon/incidents/incident.hpp"
+#include "daemon/replay/incident_replay.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/replay_start.hpp"
 #include "tool/subcommands.hpp"
@@ -178,17 +179,9 @@ void view(const ViewOptions& options) {
 
 }  // namespace
 
-daemon::ReplayJob incident_job(const std::filesystem::path& folder) {
-  daemon::ReplayJob job;
-  job.recording = folder / daemon::kIncidentRecording;
-  job.map = folder / daemon::kIncidentMap;
-  job.settings = daemon::read_settings(folder / daemon::kIncidentSettings, {});
-  return job;
-}
-
 void view_incident(const fs::path& folder, std::uint16_t port) {
   const daemon::Incident incident = daemon::read_incident(folder);
-  daemon::ReplayJob job = incident_job(folder);
+  daemon::ReplayJob job = daemon::incident_job(folder);
   job.settings.dashboard.control = false;
   view_replay(std::move(job), incident.name, port);
 }

@@ -161,6 +161,23 @@ TEST_F(IncidentKeeperTest, TheOldestThatIsNotPinnedGoesFirstAndThatIsSaid) {
   }));
 }
 
+TEST_F(IncidentKeeperTest, AFolderThatCannotBeIsToldAndAMarkIsRefusedUntilItCan) {
+  std::ofstream(folder_.path() / "incidents") << "a file";
+  start();
+  drive(20.0);
+  const control::CommandOutcome refused = mark("");
+  EXPECT_FALSE(refused.done);
+  EXPECT_TRUE(refused.message.starts_with("not kept: ")) << refused.message;
+  EXPECT_TRUE(lines_.front().starts_with("saving pauses: incidents: ")) << lines_.front();
+  fs::remove(folder_.path() / "incidents");
+  drive(12.0);
+  EXPECT_TRUE(mark("").done);
+  ASSERT_EQ(kept().size(), 1u);
+  EXPECT_TRUE(kept().front().incident.begins_in_mid_run);
+  drive(32.0);
+  EXPECT_GT(replay(kept().front(), "again").scans.localized, 300u);
+}
+
 TEST_F(IncidentKeeperTest, TheRingGoesWithTheRun) {
   start();
   drive(200.0);
