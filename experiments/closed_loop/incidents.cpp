@@ -16,6 +16,7 @@ namespace {
 constexpr std::array<const char*, 4> kIncidentPlaces{"room", "hall", "depot", "racks"};
 constexpr int kIncidentSeeds = 4;  // 240 drives
 constexpr double kSoonS = 2.0;
+constexpr double kYoungS = 1e9;  // of runs that are kept from their beginning alone
 
 std::string joined_kinds(const std::vector<TriedIncident>& all) {
   std::string kinds;
@@ -32,13 +33,13 @@ Outcome outcome_of_incidents(const std::vector<TriedIncident>& all) {
   double losses = 0.0;
   double met = 0.0;
   double soon = 0.0;
-  double least_before_s = all.empty() ? 0.0 : 1e9;
+  double least_before_s = kYoungS;
   double bytes = 0.0;
   for (const TriedIncident& one : all) {
     losses += one.has_loss ? 1.0 : 0.0;
     met += one.met_again ? 1.0 : 0.0;
     soon += one.met_again && std::abs(one.late_s) <= kSoonS ? 1.0 : 0.0;
-    least_before_s = std::min(least_before_s, one.before_s);
+    if (one.incident.begins_in_mid_run) least_before_s = std::min(least_before_s, one.before_s);
     bytes = std::max(bytes, one.bytes);
   }
   Outcome outcome;
@@ -109,10 +110,9 @@ TextTable table_of_causes(const std::vector<Outcome>& outcomes) {
 
 Report report_of_incidents(const std::vector<Outcome>& outcomes) {
   const double losses = sum(outcomes, "losses");
-  double least_before_s = 1e9;
+  double least_before_s = kYoungS;
   double largest_mb = 0.0;
   for (const Outcome& outcome : outcomes) {
-    if (outcome.number("incidents") == 0.0) continue;
     least_before_s = std::min(least_before_s, outcome.number("least_before_s"));
     largest_mb = std::max(largest_mb, outcome.number("largest_mb_on_disk"));
   }

@@ -243,6 +243,7 @@ void VirtualDaemon::turn() {
   if (now < process_->next_tick) return;
   process_->next_tick = now + duration_from_seconds(daemon::kSafetyPeriodS);
   process_->desk.set_port_open(process_->robot.is_open());
+  process_->telemetry.robot_up.set(process_->desk.robot_is_connected());
   process_->desk.tick(now);
   if (process_->listener) process_->listener->look(now);
 }

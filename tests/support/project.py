@@ -44,7 +44,7 @@ def write_section(file, title, lines):
 
 
 PLACES = {"robot.port", "laser.port", "map.file", "map.store", "map.newest", "control.socket", "poses.socket",
-          "recording.file", "dashboard.token_file"}
+          "recording.file", "incidents.folder", "dashboard.token_file"}
 
 
 def measure_a_section(description, command, title, measure):
