@@ -20,6 +20,7 @@ Settings settings_that_ran(const ReplayJob& job) {
   ran.map.store = as_delivered.map.store;
   ran.map.newest = as_delivered.map.newest;
   ran.recording.file = as_delivered.recording.file;
+  ran.incidents.folder = as_delivered.incidents.folder;
   ran.robot.port = as_delivered.robot.port;
   ran.laser.port = as_delivered.laser.port;
   return ran;

@@ -122,7 +122,8 @@ std::optional<std::string> replayed(const daemon::ReplayJob& job, ViewDesk& desk
 }
 
 /// Replays the job into the page.
-void view_replay(daemon::ReplayJob job, const std::string& name, std::uint16_t port) {
+void view_replay(daemon::ReplayJob job, const std::string& name, std::uint16_t port,
+                 const daemon::Incident* incident = nullptr) {
   const ScratchFolder scratch;
   job.out = scratch.path() / "run";
   auto given = std::make_shared<const OccupancyGrid>(told_grid(job.map));
@@ -137,6 +138,8 @@ void view_replay(daemon::ReplayJob job, const std::string& name, std::uint16_t p
                  .first_revision = start.revision,
                  .store = job.out / "map_store.sqlite"},
                 port};
+  desk.events().add_orders(recorded.journal.commands());
+  if (incident != nullptr) desk.events().add(*incident);
   job.watch.scan = [&desk](const daemon::ReplayedScan& scan) { desk.show(scan); };
   job.watch.change = [&desk](const MapRevision* revision, const daemon::ChangeNote& note) {
     desk.show(revision, note);
@@ -183,7 +186,7 @@ void view_incident(const fs::path& folder, std::uint16_t port) {
   const daemon::Incident incident = daemon::read_incident(folder);
   daemon::ReplayJob job = daemon::incident_job(folder);
   job.settings.dashboard.control = false;
-  view_replay(std::move(job), incident.name, port);
+  view_replay(std::move(job), incident.name, port, &incident);
 }
 
 void add_view(CLI::App& app) {

@@ -60,12 +60,14 @@ ViewDesk::ViewDesk(ViewedRun run, std::uint16_t port)
 void ViewDesk::show(const daemon::LocalizationRow& row) {
   constexpr double kUnknown_s = std::numeric_limits<double>::quiet_NaN();
   board_.show({}, row, kUnknown_s);
+  events_.observe(row);
   moments_.add(row.time, {daemon::pose_line({row, kUnknown_s, std::nullopt})});
 }
 
 void ViewDesk::show(const daemon::ReplayedScan& replayed) {
   const auto& [tracked, row, cost_s, particles, awareness] = replayed;
   board_.show(tracked, row, cost_s);
+  events_.observe(row);
   daemon::LiveScan scan{
       .number = row.number, .row = row, .latency_s = cost_s, .beams = daemon::beams_of(tracked), .particles = {}};
   if (particles != nullptr) scan.particles = localization::particles::sampled_poses(*particles, kParticlesKept);
@@ -86,7 +88,10 @@ void ViewDesk::keep_lasting(Timestamp now, const mapping::StoreScan& awareness) 
   moments_.add_lasting({daemon::stored_message(stored_), daemon::transient_message(transients_.get())});
 }
 
-void ViewDesk::show(const MapRevision* revision, const daemon::ChangeNote& note) { board_.show(revision, note); }
+void ViewDesk::show(const MapRevision* revision, const daemon::ChangeNote& note) {
+  board_.show(revision, note);
+  events_.observe(note);
+}
 
 void ViewDesk::tell_progress(double done) {
   const std::scoped_lock lock{mutex_};
@@ -105,6 +110,7 @@ Answer ViewDesk::answer(const Request& request) {
   if (path == "/") return daemon::page_file("index.html");
   if (path.starts_with("/page/")) return daemon::page_file(std::string_view(path).substr(6));
   if (path == "/api/moment") return moment(request.query);
+  if (path == "/api/events") return {.type = kJson, .body = events_.json() + "\n"};
   if (path == "/api/history") return {.type = kJson, .body = daemon::history_json(board_) + "\n"};
   if (path.starts_with("/api/revision/")) return revision(path);
   for (const char* form : {"png", "yaml", "pgm"}) {

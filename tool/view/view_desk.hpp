@@ -17,6 +17,7 @@
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/settings/settings.hpp"
 #include "tool/view/moment_file.hpp"
+#include "tool/view/run_events.hpp"
 
 namespace deltamap::tool {
 
@@ -41,6 +42,8 @@ class ViewDesk {
   /// Of a scan no more than its line of the log.
   void show(const daemon::LocalizationRow& row);
   void show(const MapRevision* revision, const daemon::ChangeNote& note);
+  /// What a person may jump to besides what is shown.
+  [[nodiscard]] RunEvents& events() { return events_; }
   /// How much has been read, 0 to 1.
   void tell_progress(double done);
   /// All has been read; `note`: one line of what is wrong with it, or empty.
@@ -64,6 +67,7 @@ class ViewDesk {
   daemon::LiveBoard board_;
   daemon::PageHistory history_;
   MomentFile moments_;
+  RunEvents events_;
   std::shared_ptr<const TransientObstacles> transients_;  // that the newest moment shows, as the next
   mapping::StoredScans stored_;
   std::optional<Timestamp> lasting_kept_;

@@ -38,6 +38,8 @@ export class Run {
     this.slider.step = STEP_S;
     this.slider.addEventListener("input", () => this.walk(this.told.from + Number(this.slider.value)));
     by_id("run-play").addEventListener("click", () => this.play(!this.timer));
+    by_id("run-before").addEventListener("click", () => this.jump(-1));
+    by_id("run-next").addEventListener("click", () => this.jump(1));
   }
 
   get is_open() { return this.kind !== null; }
@@ -48,7 +50,7 @@ export class Run {
     this.kind = run?.kind ?? null;
     this.model.run = run;
     if (run) document.body.dataset.run = run.kind; else delete document.body.dataset.run;
-    this.model.until = this.told = this.wanted = null;
+    this.model.until = this.told = this.wanted = this.noted = null;
     this.follows_end = true;
     this.maps.clear();
     this.view.judge_by(null);
@@ -60,7 +62,8 @@ export class Run {
     this.told = told;
     const has_scans = told.from !== null;
     by_id("run-bar").hidden = !has_scans;
-    by_id("run-note").textContent = told.complete ? told.note : `reading: ${Math.floor(100 * told.done)} %`;
+    const note = told.complete ? told.note : `reading: ${Math.floor(100 * told.done)} %`;
+    if (note !== this.noted) by_id("run-note").textContent = this.noted = note;  // what a jump has told stays
     if (!has_scans) return;
     this.slider.max = (Math.ceil((told.to - told.from) / STEP_S) * STEP_S).toFixed(1);
     if (this.follows_end) this.aim(told.to); else this.tell();
@@ -70,6 +73,20 @@ export class Run {
   walk(time) {
     this.go(time);
     this.on_walk(this.wanted);
+  }
+
+  /// To the next event of the chosen kind (1), or to the one before (-1).
+  async jump(direction) {
+    const note = by_id("run-note"), kind = by_id("run-kind").value;
+    try {
+      const events = await (await fetched("/api/events")).json();
+      const ahead = events.filter((event) => (!kind || event.kind === kind) && direction * (event.time - this.wanted) > STEP_S / 2);
+      const event = direction > 0 ? ahead[0] : ahead[ahead.length - 1];
+      if (event) this.walk(event.time);
+      note.textContent = event ? `${event.kind}: ${event.words}` : `no ${kind || "event"} ${direction > 0 ? "behind" : "before"} this`;
+    } catch (error) {
+      note.textContent = error.message;
+    }
   }
 
   /// A person's wish.

@@ -135,6 +135,15 @@ class ViewTest : public test::PipelineFixture {
   std::thread thread_;
 };
 
+TEST_F(ViewTest, TellsWhatOneMayJumpTo) {
+  serve_folder();
+  const auto events = nlohmann::json::parse(got("/api/events").body);
+  const auto changes =
+      std::count_if(events.begin(), events.end(), [](const auto& one) { return one["kind"] == "change"; });
+  EXPECT_EQ(changes, static_cast<std::ptrdiff_t>(report_.changes.accepted()));
+  EXPECT_GT(changes, 0);
+}
+
 TEST_F(ViewTest, AFolderIsReadAsTheRunWroteIt) {
   const RunFolder read = read_run_folder(run());
   EXPECT_EQ(read.notes, std::vector<std::string>{});
