@@ -170,6 +170,7 @@ const Rooms kRoomArrows = {
     {"mapping/redraw", {"mapping/registration", "mapping/scan_set", "mapping/votes"}},
     {"mapping/gate", {}},
     {"mapping/store", {}},
+    {"mapping/things", {}},
     {"surveying/calibration", {}},
     {"surveying/grid_registration", {}},
     {"surveying/quality", {}},

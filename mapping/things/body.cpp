@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/things/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapping/things/outline_fit.hpp"
+
+namespace deltamap::mapping::things {
+namespace {
+
+constexpr double kLeftShare = 0.4;    // fewer of its cells are left: it is no longer there
+constexpr double kWholeShare = 0.75;  // fewer, and none new: its outline stays until it is clear what becomes of it
+constexpr double kOtherShape_m = 0.3;
+constexpr int kWholeSides = 3;  // seen: the rectangle is certain
+
+constexpr double kFarthestPart_m = 3.5;  // between the middles of two faces of one body
+constexpr double kInside_m = 0.3;
+constexpr double kOnSidesShare = 0.85;  // of the surfaces of both, on the sides of one rectangle
+constexpr double kLineGap_m = 0.5;      // between two pieces of one face
+constexpr double kShownShare = 0.5;     // of the sum of two sides of a rectangle, by two of its faces
+
+constexpr double kClosedShare = 0.6;  // of the rectangle: its own cells, with those that it closes off
+
+int sides_seen(const Outline& outline) {
+  return static_cast<int>(std::count(outline.seen.begin(), outline.seen.end(), true));
+}
+
+/// Of that outline: three sides are seen, or its inside is closed off.
+bool is_whole(const Body& body, const Outline& outline, Side side, double resolution_m) {
+  if (outline.width_m < kOneFace_m) return false;
+  const double cells = outline.length_m * outline.width_m / (resolution_m * resolution_m);
+  const bool is_closed = side == Side::kCome && static_cast<double>(body.come.count()) > kClosedShare * cells;
+  return is_closed || sides_seen(outline) >= kWholeSides;
+}
+
+BodyCells cells_of(const Body& body, Side side, const OccupancyGrid& map) {
+  BodyCells cells;
+  cells.resolution_m = map.resolution_m();
+  body.cells(side).visit([&](Cell cell, CellState before) {
+    const CellState now = map.at(cell);
+    const Point2 centre = map.geometry().centre_of(cell);
+    if (side == Side::kCome) {
+      if (now == CellState::kOccupied) cells.faces.push_back(centre);
+      if (now == CellState::kUnknown) cells.inside.push_back(centre);
+    } else if (now == CellState::kFree) {
+      (before == CellState::kOccupied ? cells.faces : cells.inside).push_back(centre);
+    }
+  });
+  return cells;
+}
+
+bool is_same_size(const Outline& a, const Outline& b, double tolerance_m) {
+  return std::abs(a.length_m - b.length_m) <= tolerance_m && std::abs(a.width_m - b.width_m) <= tolerance_m;
+}
+
+/// What a new outline of where it stands means beside the last one.
+void stand_at(Body& body, const Outline& now, bool has_lost_much, const ThingsParams& params) {
+  Thing& thing = body.thing;
+  if (thing.at && body.told && has_lost_much && is_same_size(*thing.at, now, params.same_size_m) &&
+      (thing.at->centre - now.centre).norm() > kLeastShift_m) {
+    if (!thing.from) thing.from = thing.at;
+    thing.kind = ThingKind::kMoved;
+  } else if (thing.at && body.told && has_lost_much && thing.kind == ThingKind::kAppeared &&
+             sides_seen(*thing.at) >= kWholeSides && !is_same_size(*thing.at, now, kOtherShape_m)) {
+    thing.kind = ThingKind::kChanged;
+  }
+  thing.at = now;
+}
+
+void leave(Body& body, const ChangedMap& step) {
+  Thing& thing = body.thing;
+  thing.kind = step.takes_back ? ThingKind::kTakenBack : ThingKind::kGone;
+  thing.from = thing.at;
+  thing.at.reset();
+  body.gone.clear();
+  body.most_faces_gone = 0;
+  body.grown = step.time;
+}
+
+void judge_standing(Body& body, const ChangedMap& step, const ThingsParams& params) {
+  const BodyCells cells = cells_of(body, Side::kCome, step.map);
+  const std::size_t faces = cells.faces.size();
+  const std::size_t most = std::max(body.most_faces_come, faces);
+  body.most_faces_come = most;
+  if (static_cast<double>(faces) < kLeftShare * static_cast<double>(most)) {
+    if (!body.thing.at) return;
+    if (body.told) return leave(body, step);
+    body.thing.at.reset();
+    return;
+  }
+  const bool is_whole = static_cast<double>(faces) >= kWholeShare * static_cast<double>(most);
+  if (faces == 0 || (!is_whole && !body.has_grown && body.thing.at)) return;
+  if (body.told && !body.thing.at) {
+    if (!step.takes_back) return;  // what is left of it
+    body.thing.kind = ThingKind::kAppeared;
+    body.thing.from.reset();
+  }
+  const bool has_lost_much = static_cast<double>(body.come.count()) < 0.85 * static_cast<double>(body.written);
+  stand_at(body, outline_of_come(cells), has_lost_much, params);
+}
+
+void judge_gone(Body& body, const ChangedMap& step) {
+  const BodyCells cells = cells_of(body, Side::kGone, step.map);
+  const std::size_t faces = cells.faces.size();
+  const std::size_t most = std::max(body.most_faces_gone, faces);
+  body.most_faces_gone = most;
+  if (static_cast<double>(faces) >= kLeftShare * static_cast<double>(most) && faces > 0) {
+    body.thing.from = outline_of_gone(cells, step.map);
+    if (!body.thing.at) body.thing.kind = ThingKind::kGone;
+    return;
+  }
+  if (step.takes_back && body.told) body.thing.kind = ThingKind::kTakenBack;
+  if (!body.told) body.thing.from.reset();
+  body.gone.clear();  // something else stands there by now
+  body.most_faces_gone = 0;
+}
+
+bool differ(const std::optional<Outline>& a, const std::optional<Outline>& b, double step_m) {
+  if (!a || !b) return a.has_value() != b.has_value();
+  return (a->centre - b->centre).norm() > step_m || std::abs(a->length_m - b->length_m) > step_m ||
+         std::abs(a->width_m - b->width_m) > step_m;
+}
+
+}  // namespace
+
+bool is_whole(const Body& body, Side side, double resolution_m) {
+  const auto& outline = body.outline(side);
+  return outline && is_whole(body, *outline, side, resolution_m);
+}
+
+bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& map, double quiet_s) {
+  const auto& one = a.outline(side);
+  const auto& other = b.outline(side);
+  if (!one || !other || (one->centre - other->centre).norm() > kFarthestPart_m) return false;
+  const bool is_inside_other = is_inside(*one, other->centre, kInside_m) || is_inside(*other, one->centre, kInside_m);
+  if ((is_whole(a, side, map.resolution_m()) || is_whole(b, side, map.resolution_m())) && !is_inside_other)
+    return false;
+  BodyCells both = cells_of(a, side, map);
+  const BodyCells more = cells_of(b, side, map);
+  both.faces.insert(both.faces.end(), more.faces.begin(), more.faces.end());
+  if (both.faces.empty()) return false;  // they are no longer followed
+  both.inside.insert(both.inside.end(), more.inside.begin(), more.inside.end());
+  const Outline all = side == Side::kCome ? outline_of_come(both) : outline_of_gone(both, map);
+  if (share_on_sides(both, all) < kOnSidesShare) return false;
+  if (all.width_m < kOneFace_m) {
+    const bool in_one_look = std::abs(seconds(a.grown - b.grown)) <= quiet_s;
+    return in_one_look && all.length_m <= one->length_m + other->length_m + kLineGap_m;
+  }
+  return is_inside_other || one->length_m + other->length_m >= kShownShare * (all.length_m + all.width_m);
+}
+
+void own(Body& body, std::span<const CellChange> cells, Side side) {
+  const std::size_t before = body.cells(side).count();
+  for (const CellChange& change : cells) body.cells(side).own(change.cell, change.before);
+  body.written += body.cells(side).count() - before;
+  body.is_touched = true;
+}
+
+void judge(Body& body, const ChangedMap& step, const ThingsParams& params) {
+  if (!body.come.empty() || body.thing.at) judge_standing(body, step, params);
+  if (body.most_faces_gone > 0 || !body.gone.empty()) judge_gone(body, step);
+  body.thing.last_seen = step.time;
+  body.thing.confidence = body.written == 0 ? 0.0
+                                            : static_cast<double>(body.come.count() + body.gone.count()) /
+                                                  static_cast<double>(body.written);
+  if (body.thing.revisions.empty() || body.thing.revisions.back() != step.number)
+    body.thing.revisions.push_back(step.number);
+  if (body.thing.revisions.size() > Thing::kMostRevisions) body.thing.revisions.erase(body.thing.revisions.begin());
+}
+
+bool is_tellable(const Body& body, const ThingsParams& params) {
+  const auto is_enough = [&](const std::optional<Outline>& outline, std::size_t faces) {
+    return outline && outline->length_m >= params.least_size_m && faces >= static_cast<std::size_t>(params.least_cells);
+  };
+  return is_enough(body.thing.at, body.most_faces_come) || is_enough(body.thing.from, body.most_faces_gone);
+}
+
+bool differs_from_told(const Body& body, double told_step_m) {
+  return !body.told || body.told->kind != body.thing.kind || differ(body.told->at, body.thing.at, told_step_m) ||
+         differ(body.told->from, body.thing.from, told_step_m);
+}
+
+}  // namespace deltamap::mapping::things

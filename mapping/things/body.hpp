@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// A body that is followed cell by cell: what came to stand here, what stood here and is gone, and what that makes of
+// the thing that is told of it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/grid/grid_patch.hpp"
+#include "core/time.hpp"
+#include "mapping/things/thing.hpp"
+#include "mapping/things/thing_cells.hpp"
+
+namespace deltamap::mapping::things {
+
+struct ThingsParams {
+  double least_size_m = 0.3;                ///< of a body's longer side; what is smaller is a correction, > 0
+  int least_cells = 6;                      ///< of its surface, >= 1
+  double gap_m = 0.15;                      ///< that is bridged between cells of one body, >= 0
+  double told_step_m = 0.1;                 ///< change of place or size that is told as an update, > 0
+  double same_size_m = 0.25;                ///< sides that differ by less are the same, > 0
+  double one_look_s = 60.0;                 ///< what comes and goes within it was seen in one look, > 0
+  double quiet_s = 180.0;                   ///< a face that has not grown for so long is whole, > 0
+  double tentative_s = 600.0;               ///< cells too few to be told are forgotten after that, > 0
+  std::size_t most_cell_bytes = 1'000'000;  ///< of followed bodies; the longest quiet are followed no more
+  std::size_t most_things = 2000;           ///< listed; the oldest of what has gone or was taken back are left out
+};
+
+/// One revision, as Things look at it.
+struct ChangedMap {
+  std::uint32_t number = 0;
+  Timestamp time;
+  const OccupancyGrid& map;             ///< M_k
+  std::span<const CellChange> changes;  ///< from M_{k-1}
+  bool takes_back = false;              ///< an undo, a rollback or a withdrawal: nothing new is said of the world
+};
+
+/// Between the middles of a body before and after it was moved, m; less is a correction of its place.
+inline constexpr double kLeastShift_m = 0.15;
+
+enum class Side : std::uint8_t { kCome, kGone };
+
+struct Body {
+  Thing thing;                      ///< id 0: not told yet
+  ThingCells come;                  ///< what stands here and did not, and what that closes off
+  ThingCells gone;                  ///< what stood here and does not, and the floor that this has shown
+  std::size_t most_faces_come = 0;  ///< cells of its surface, at most so far
+  std::size_t most_faces_gone = 0;
+  std::size_t written = 0;    ///< cells ever owned
+  Timestamp grown;            ///< when its surface last grew, or it went
+  std::optional<Thing> told;  ///< as it was told last; nothing: not yet
+  bool is_touched = false;    ///< by the revision that is being taken
+  bool has_grown = false;     ///< by the same
+
+  [[nodiscard]] ThingCells& cells(Side side) { return side == Side::kCome ? come : gone; }
+  [[nodiscard]] const ThingCells& cells(Side side) const { return side == Side::kCome ? come : gone; }
+  /// Where the cells of that side lie: where it stands, or stood.
+  [[nodiscard]] const std::optional<Outline>& outline(Side side) const {
+    return side == Side::kCome ? thing.at : thing.from;
+  }
+};
+
+/// Takes the cells into the body.
+void own(Body& body, std::span<const CellChange> cells, Side side);
+
+/// What the map now says of its outline and its kind.
+void judge(Body& body, const ChangedMap& step, const ThingsParams& params);
+
+/// Whether the surfaces of both are sides of one rectangle that is no larger than what they show of it: the front and a
+/// side of one body, that were seen one after the other. Bodies beside each other are not.
+[[nodiscard]] bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& map, double quiet_s);
+
+/// All of its outline is certain: what lies beyond belongs to another body.
+[[nodiscard]] bool is_whole(const Body& body, Side side, double resolution_m);
+
+/// Whether it has enough of a surface to be told.
+[[nodiscard]] bool is_tellable(const Body& body, const ThingsParams& params);
+
+/// What would be told differs from what was by more than the step.
+[[nodiscard]] bool differs_from_told(const Body& body, double told_step_m);
+
+}  // namespace deltamap::mapping::things

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/things/things.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "core/grid/near_occupied.hpp"
+#include "mapping/things/cell_clusters.hpp"
+
+namespace deltamap::mapping::things {
+namespace {
+
+constexpr int kSurfaceReach = 1;        // cells; what changes so near to a surface that stays corrects it
+constexpr std::size_t kLeastSeeds = 2;  // cells of a cluster that are no correction, for a body to begin
+constexpr int kInsideReach = 2;         // cells between a face and what it closes off
+constexpr double kBeyond_m = 0.25;      // so far outside of an outline is beyond it
+
+bool became_surface(const CellChange& change) { return change.after == CellState::kOccupied; }
+bool lost_surface(const CellChange& change) {
+  return change.before == CellState::kOccupied && change.after == CellState::kFree;
+}
+
+OccupancyGrid map_before(const ChangedMap& step) {
+  OccupancyGrid before = step.map;
+  for (const CellChange& change : step.changes) before.set(change.cell, change.before);
+  return before;
+}
+
+/// Most of it lies outside of the outline.
+bool is_beyond(const std::vector<CellChange>& cluster, const Outline& outline, const GridGeometry& geometry) {
+  const auto outside = std::count_if(cluster.begin(), cluster.end(), [&](const CellChange& change) {
+    return !is_inside(outline, geometry.centre_of(change.cell), kBeyond_m);
+  });
+  return 2 * static_cast<std::size_t>(outside) > cluster.size();
+}
+
+std::size_t cells_touching(const ThingCells& cells, const std::vector<CellChange>& cluster, int reach_cells) {
+  if (common(grown(cells.box(), reach_cells), bounding_box(cluster)).empty()) return 0;
+  return static_cast<std::size_t>(std::count_if(cluster.begin(), cluster.end(), [&](const CellChange& change) {
+    return cells.has_within(change.cell, reach_cells);
+  }));
+}
+
+}  // namespace
+
+struct Things::Step {
+  const ChangedMap& now;
+  OccupancyGrid before;
+  int gap_cells;
+
+  /// It corrects a surface that was there, or still is.
+  [[nodiscard]] bool is_correction(const CellChange& change) const {
+    return has_occupied_within(became_surface(change) ? before : now.map, change.cell, kSurfaceReach);
+  }
+};
+
+std::vector<ThingEvent> Things::take(const ChangedMap& changed) {
+  const int gap_cells = std::max(1, static_cast<int>(std::lround(params_.gap_m / changed.map.resolution_m())));
+  const Step step{changed, map_before(changed), gap_cells};
+  for (Body& body : bodies_) body.is_touched = body.has_grown = false;
+  joined_.clear();
+  const Cells left = restored(step);
+  for (const Side side : {Side::kGone, Side::kCome}) {
+    add_surfaces(step, left, side);
+    add_insides(changed.map.geometry(), left, side);
+  }
+  std::vector<ThingEvent> events = told(step);
+  drop_tentative(step);
+  stay_within_bounds();
+  return events;
+}
+
+Things::Cells Things::restored(const Step& step) {
+  std::vector<Body*> near;
+  const CellBox changed = bounding_box(step.now.changes);
+  for (Body& body : bodies_) {
+    if (!common(body.come.box(), changed).empty() || !common(body.gone.box(), changed).empty()) near.push_back(&body);
+  }
+  Cells left;
+  for (const CellChange& change : step.now.changes) {
+    bool is_claimed = false;
+    for (Body* body : near) {
+      if (const auto before = body->come.before(change.cell)) {
+        if (change.after == *before || change.after == CellState::kFree) {
+          body->come.drop(change.cell);
+          is_claimed = true;
+        }
+        body->is_touched = true;
+      }
+      if (body->gone.before(change.cell) && change.after != CellState::kFree) {
+        body->gone.drop(change.cell);
+        body->is_touched = true;
+      }
+    }
+    if (!is_claimed) left.push_back(change);
+  }
+  return left;
+}
+
+void Things::add_surfaces(const Step& step, const Cells& changes, Side side) {
+  Cells surface;
+  std::copy_if(changes.begin(), changes.end(), std::back_inserter(surface), [&](const CellChange& change) {
+    return side == Side::kCome ? became_surface(change) : lost_surface(change);
+  });
+  for (const Cells& cluster : cell_clusters(surface, step.gap_cells)) {
+    Body* body = body_of(step, cluster, side);
+    if (body == nullptr) {
+      const auto seeds = std::count_if(cluster.begin(), cluster.end(), [&](const CellChange& change) {
+        return change.before != CellState::kUnknown && !step.is_correction(change);
+      });
+      if (static_cast<std::size_t>(seeds) < kLeastSeeds || step.now.takes_back) {
+        corrections_ += cluster.size();
+        continue;
+      }
+      body = &bodies_.emplace_back();
+      body->thing.first_seen = step.now.time;
+    }
+    own(*body, cluster, side);
+    body->grown = step.now.time;
+    body->has_grown = true;
+  }
+}
+
+/// It touches the cluster, and may still grow by it.
+std::size_t Things::cells_it_grows_by(const Body& body, const Step& step, const Cells& cluster, Side side) const {
+  if (side == Side::kCome && body.told && !body.thing.at) return 0;  // what is left of one that has gone
+  const std::size_t touching = cells_touching(body.cells(side), cluster, step.gap_cells);
+  if (touching == 0) return 0;
+  const auto& outline = body.outline(side);
+  const bool grows_no_more = outline && (is_whole(body, side, step.now.map.resolution_m()) ||
+                                         seconds(step.now.time - body.grown) > params_.quiet_s);
+  return grows_no_more && is_beyond(cluster, *outline, step.now.map.geometry()) ? 0 : touching;
+}
+
+Body* Things::body_of(const Step& step, const Cells& cluster, Side side) {
+  Body* best = nullptr;
+  std::size_t most = 0;
+  for (auto next = bodies_.begin(); next != bodies_.end();) {
+    Body& body = *next++;
+    const bool has_gone = side == Side::kCome && body.thing.kind == ThingKind::kGone && body.most_faces_come > 0;
+    if (has_gone && step.now.takes_back && body.thing.from &&
+        !is_beyond(cluster, *body.thing.from, step.now.map.geometry())) {
+      return &body;  // the word that it has gone is taken back
+    }
+    const std::size_t grows_by = cells_it_grows_by(body, step, cluster, side);
+    if (grows_by == 0) continue;
+    if (best != nullptr && (!best->told || !body.told)) {
+      best = &unite(*best, body);
+      most += grows_by;
+    } else if (grows_by > most) {
+      best = &body;
+      most = grows_by;
+    }
+  }
+  return best;
+}
+
+void Things::add_insides(const GridGeometry& geometry, const Cells& changes, Side side) {
+  const CellState before = side == Side::kCome ? CellState::kFree : CellState::kUnknown;
+  const CellState after = side == Side::kCome ? CellState::kUnknown : CellState::kFree;
+  Cells insides;
+  std::copy_if(changes.begin(), changes.end(), std::back_inserter(insides),
+               [&](const CellChange& change) { return change.before == before && change.after == after; });
+  for (const Cells& cluster : cell_clusters(insides, 1)) {
+    std::vector<Body*> touching;  // that whose surface grew last comes first
+    for (Body& body : bodies_) {
+      if (cells_touching(body.cells(side), cluster, kInsideReach) > 0) touching.push_back(&body);
+    }
+    if (touching.empty()) continue;
+    std::stable_sort(touching.begin(), touching.end(),
+                     [](const Body* a, const Body* b) { return a->grown > b->grown; });
+    for (const CellChange& change : cluster) {
+      const auto has_it = [&](const Body* body) {
+        return body->outline(side) && is_inside(*body->outline(side), geometry.centre_of(change.cell), kBeyond_m);
+      };
+      const auto owner = std::find_if(touching.begin(), touching.end(), has_it);
+      own(owner == touching.end() ? *touching.front() : **owner, {&change, 1}, side);
+    }
+  }
+}
+
+std::vector<ThingEvent> Things::told(const Step& step) {
+  for (Body& body : bodies_) {
+    if (body.is_touched) judge(body, step.now, params_);
+  }
+  join_faces(step.now);
+  join_moves();
+  std::vector<ThingEvent> events;
+  for (const Thing& thing : joined_) events.push_back({thing, step.now.number, step.now.time, true});
+  for (Body& body : bodies_) {
+    if (!body.is_touched || (!body.told && (!is_tellable(body, params_) || only_flickers(body)))) continue;
+    if (!differs_from_told(body, params_.told_step_m)) continue;
+    const bool is_new = !body.told || body.told->kind != body.thing.kind;
+    if (body.thing.id == 0) body.thing.id = ++newest_id_;
+    if (body.told) ++body.thing.updates;
+    body.told = body.thing;
+    events.push_back({body.thing, step.now.number, step.now.time, is_new});
+  }
+  return events;
+}
+
+void Things::drop_tentative(const Step& step) {
+  std::erase_if(bodies_, [&](const Body& body) {
+    if (body.told) return false;
+    const bool is_empty = body.come.empty() && body.gone.empty();
+    if (!is_empty && seconds(step.now.time - body.thing.first_seen) <= params_.tentative_s) return false;
+    corrections_ += body.written;
+    return true;
+  });
+}
+
+void Things::stay_within_bounds() {
+  for (std::size_t bytes = cell_bytes(); bytes > params_.most_cell_bytes; bytes = cell_bytes()) {
+    const auto quietest = std::min_element(bodies_.begin(), bodies_.end(), [](const Body& a, const Body& b) {
+      const bool a_has = a.come.bytes() + a.gone.bytes() > 0;
+      const bool b_has = b.come.bytes() + b.gone.bytes() > 0;
+      return a_has != b_has ? a_has : a.thing.last_seen < b.thing.last_seen;
+    });
+    quietest->come.clear();
+    quietest->gone.clear();
+    if (!quietest->told) bodies_.erase(quietest);
+  }
+  while (bodies_.size() > params_.most_things) {
+    const auto oldest = std::find_if(bodies_.begin(), bodies_.end(), [](const Body& body) { return !body.thing.at; });
+    bodies_.erase(oldest == bodies_.end() ? bodies_.begin() : oldest);
+    ++forgotten_;
+  }
+}
+
+std::size_t Things::cell_bytes() const {
+  std::size_t bytes = 0;
+  for (const Body& body : bodies_) bytes += body.come.bytes() + body.gone.bytes();
+  return bytes;
+}
+
+std::vector<Thing> Things::all() const {
+  std::vector<Thing> things;
+  for (const Body& body : bodies_) {
+    if (body.told) things.push_back(body.thing);
+  }
+  std::sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.id < b.id; });
+  return things;
+}
+
+}  // namespace deltamap::mapping::things

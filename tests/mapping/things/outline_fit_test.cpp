@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/things/outline_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace deltamap::mapping::things {
+namespace {
+
+constexpr double kCell_m = 0.05;
+constexpr double kHeading_rad = 0.4;
+
+/// Cells of a grid that lie along a line of the body's own frame, turned and put at (3, 2).
+void add_line(BodyCells& cells, const Point2& from, const Point2& to) {
+  const Pose2 map_from_body{3.0, 2.0, kHeading_rad};
+  const int steps = static_cast<int>((to - from).norm() / kCell_m);
+  for (int i = 0; i <= steps; ++i) {
+    const Point2 place = map_from_body * Point2{from + (to - from) * (static_cast<double>(i) / steps)};
+    cells.faces.push_back(
+        {(std::floor(place.x() / kCell_m) + 0.5) * kCell_m, (std::floor(place.y() / kCell_m) + 0.5) * kCell_m});
+  }
+}
+
+TEST(OutlineFit, TwoFacesOfATurnedBoxGiveItsWholeRectangle) {
+  BodyCells cells{{}, {}, kCell_m};
+  add_line(cells, {-1.2, -0.8}, {1.2, -0.8});
+  add_line(cells, {-1.2, -0.8}, {-1.2, 0.8});
+  const Outline outline = outline_of_come(cells);
+  EXPECT_NEAR(outline.heading_rad, kHeading_rad, 0.03);
+  EXPECT_NEAR(outline.length_m, 2.4, 0.1);
+  EXPECT_NEAR(outline.width_m, 1.6, 0.1);
+  EXPECT_NEAR((outline.centre - Point2{3.0, 2.0}).norm(), 0.0, 0.1);
+  EXPECT_EQ(outline.seen, (std::array<bool, 4>{false, false, true, true}));
+}
+
+TEST(OutlineFit, TheHeadingLiesAlongTheLongerSide) {
+  BodyCells cells{{}, {}, kCell_m};
+  add_line(cells, {-0.4, -1.5}, {-0.4, 1.5});
+  add_line(cells, {0.4, -1.5}, {0.4, 1.5});
+  const Outline outline = outline_of_come(cells);
+  EXPECT_NEAR(outline.heading_rad, kHeading_rad + std::numbers::pi / 2, 0.03);
+  EXPECT_NEAR(outline.length_m, 3.0, 0.1);
+}
+
+TEST(OutlineFit, OfASingleFaceOneSideIsSeen) {
+  BodyCells cells{{}, {}, kCell_m};
+  add_line(cells, {-1.0, 0.0}, {1.0, 0.0});
+  const Outline outline = outline_of_come(cells);
+  EXPECT_LT(outline.width_m, 0.15);
+  EXPECT_EQ(outline.seen, (std::array<bool, 4>{false, true, false, false}));
+}
+
+TEST(OutlineFit, OverlapIsOfTheSmallerOne) {
+  const Outline large{{0.0, 0.0}, 4.0, 2.0, 0.0, {}};
+  EXPECT_NEAR(overlap_share(large, {{0.0, 0.0}, 1.0, 1.0, 0.0, {}}), 1.0, 1e-9);
+  EXPECT_NEAR(overlap_share({{2.0, 0.0}, 1.0, 1.0, 0.0, {}}, large), 0.5, 0.05);
+  EXPECT_NEAR(overlap_share(large, {{9.0, 0.0}, 1.0, 1.0, 0.0, {}}), 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::things

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/things/things.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/mapping/things/drawn_site.hpp"
+
+namespace deltamap::mapping::things {
+namespace {
+
+constexpr Drawn kBox{4.0, 4.0, 6.4, 5.6};  // 2.4 m × 1.6 m, in the middle of the floor
+constexpr double kCells_m = 0.11;          // two cells
+
+void expect_outline(const Outline& outline, const Drawn& box) {
+  EXPECT_NEAR(outline.length_m, std::max(box.high_x - box.low_x, box.high_y - box.low_y), kCells_m);
+  EXPECT_NEAR(outline.width_m, std::min(box.high_x - box.low_x, box.high_y - box.low_y), kCells_m);
+  EXPECT_NEAR(outline.centre.x(), 0.5 * (box.low_x + box.high_x), kCells_m);
+  EXPECT_NEAR(outline.centre.y(), 0.5 * (box.low_y + box.high_y), kCells_m);
+}
+
+int sides_seen(const Outline& outline) {
+  return static_cast<int>(std::count(outline.seen.begin(), outline.seen.end(), true));
+}
+
+TEST(Things, ABoxSeenSideBySideIsOneEventThatGrows) {
+  DrawnSite site;
+  const auto first = site.south(kBox).revision(10.0);
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_TRUE(first[0].is_new);
+  EXPECT_EQ(first[0].thing.kind, ThingKind::kAppeared);
+  EXPECT_EQ(sides_seen(*first[0].thing.at), 1);
+  for (const auto& event : site.west(kBox).revision(40.0)) EXPECT_FALSE(event.is_new);
+  for (const auto& event : site.north(kBox).revision(400.0)) EXPECT_FALSE(event.is_new) << "long after the first";
+  for (const auto& event : site.east(kBox).revision(900.0)) EXPECT_FALSE(event.is_new);
+
+  const std::vector<Thing> all = site.things.all();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].id, 1u);
+  expect_outline(*all[0].at, kBox);
+  EXPECT_EQ(sides_seen(*all[0].at), 4);
+  EXPECT_EQ(all[0].revisions, (std::vector<std::uint32_t>{1, 2, 3, 4}));
+  EXPECT_EQ(all[0].first_seen, DrawnSite::at(10.0));
+  EXPECT_EQ(all[0].last_seen, DrawnSite::at(900.0));
+  EXPECT_DOUBLE_EQ(all[0].confidence, 1.0);
+}
+
+TEST(Things, FacesThatAreSeenApartFromEachOtherAreOneBody) {
+  DrawnSite site;
+  site.south({4.0, 4.0, 6.2, 5.6}).revision(10.0);
+  site.fill({6.4, 4.6, 6.4, 5.6}, CellState::kOccupied).revision(20.0);  // the corner between them was hidden
+  ASSERT_EQ(site.things.all().size(), 1u);
+  expect_outline(*site.things.all()[0].at, kBox);
+}
+
+TEST(Things, WhatAFaceClosesOffTellsItsDepth) {
+  DrawnSite site;
+  site.fill({4.0, 0.1, 4.0, 3.0}, CellState::kOccupied).fill({6.5, 0.1, 6.5, 3.0}, CellState::kOccupied);
+  site.begin_with_what_is_drawn();  // a bay between two walls
+  site.fill({4.05, 2.5, 6.45, 2.5}, CellState::kOccupied).fill({4.05, 0.1, 6.45, 2.45}, CellState::kUnknown);
+  const auto told = site.revision(10.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_NEAR(told[0].thing.at->length_m, 2.4, 2 * kCells_m);
+  EXPECT_NEAR(told[0].thing.at->width_m, 2.4, 2 * kCells_m);
+}
+
+TEST(Things, AThingThatStoodThereFromTheBeginningGoes) {
+  DrawnSite site;
+  site.box(kBox).fill({4.05, 4.05, 6.35, 5.55}, CellState::kUnknown).begin_with_what_is_drawn();
+  const auto told = site.clear(kBox).revision(10.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kGone);
+  EXPECT_FALSE(told[0].thing.at);
+  expect_outline(*told[0].thing.from, kBox);
+}
+
+TEST(Things, OfABodyWhoseFrontAloneWasKnownTheFloorBehindTellsTheDepth) {
+  DrawnSite site;
+  const Drawn slot{4.0, 0.0, 6.4, 2.0};
+  site.fill({0.0, 0.0, 11.95, 2.0}, CellState::kUnknown).fill({0.0, 2.0, 11.95, 2.0}, CellState::kOccupied);
+  site.begin_with_what_is_drawn();  // a row along the wall
+  site.clear({4.05, 0.05, 6.35, 2.0}).west(slot).east(slot).south(slot);
+  const auto told = site.revision(10.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kGone);
+  EXPECT_NEAR(told[0].thing.from->length_m, 2.4, 2 * kCells_m);
+  EXPECT_NEAR(told[0].thing.from->width_m, 2.0, 2 * kCells_m);
+}
+
+TEST(Things, WhatAppearedGoesUnderTheSameId) {
+  DrawnSite site;
+  site.box(kBox).revision(10.0);
+  const auto told = site.clear(kBox).revision(500.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_TRUE(told[0].is_new);
+  EXPECT_EQ(told[0].thing.id, 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kGone);
+  expect_outline(*told[0].thing.from, kBox);
+  EXPECT_EQ(site.things.all().size(), 1u);
+}
+
+TEST(Things, WhatComesWhereAnotherWentIsANewThing) {
+  DrawnSite site;
+  site.box(kBox).revision(10.0);
+  site.clear(kBox).revision(500.0);
+  const auto told = site.box(kBox).revision(900.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.id, 2u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kAppeared);
+}
+
+TEST(Things, ABoxThatIsPushedAsideHasMoved) {
+  DrawnSite site;
+  site.box(kBox).begin_with_what_is_drawn();
+  const Drawn aside{4.6, 4.3, 7.0, 5.9};
+  site.clear(kBox).revision(10.0);
+  const auto told = site.box(aside).revision(20.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kMoved);
+  EXPECT_EQ(told[0].thing.id, 1u) << "it is the one that was told to have gone";
+  expect_outline(*told[0].thing.from, kBox);
+  expect_outline(*told[0].thing.at, aside);
+  EXPECT_EQ(site.things.all().size(), 1u);
+}
+
+TEST(Things, WhatComesLongAfterAnotherWentHasNotMoved) {
+  DrawnSite site;
+  site.box(kBox).begin_with_what_is_drawn();
+  site.clear(kBox).revision(10.0);
+  const auto told = site.box({4.6, 4.3, 7.0, 5.9}).revision(1000.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kAppeared);
+  EXPECT_EQ(told[0].thing.id, 2u);
+}
+
+TEST(Things, ABoxOfAnotherSizeHasNotMoved) {
+  DrawnSite site;
+  site.box(kBox).begin_with_what_is_drawn();
+  site.clear(kBox).revision(10.0);
+  const auto told = site.box({4.6, 4.3, 5.6, 5.0}).revision(20.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kAppeared);
+}
+
+TEST(Things, TwoBoxesBesideEachOtherStayTwo) {
+  DrawnSite site;
+  const Drawn left{2.0, 4.0, 4.0, 6.0};
+  const Drawn right{4.3, 4.0, 6.3, 6.0};
+  site.box(left).box(right);
+  ASSERT_EQ(site.revision(10.0).size(), 2u);
+  expect_outline(*site.things.all()[0].at, left);
+  expect_outline(*site.things.all()[1].at, right);
+}
+
+TEST(Things, ABoxPutAgainstAnotherIsASecondThing) {
+  DrawnSite site;
+  const Drawn first{2.0, 4.0, 4.0, 6.0};
+  const Drawn second{4.05, 4.0, 6.05, 6.0};
+  site.box(first).revision(10.0);
+  const auto told = site.box(second).revision(60.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.id, 2u);
+  expect_outline(*told[0].thing.at, second);
+}
+
+TEST(Things, AFaceAcrossTheWholeLengthOfAHallGrowsIntoOne) {
+  DrawnSite site;
+  for (int piece = 0; piece < 8; ++piece)
+    site.fill({1.0 + piece, 5.0, 1.9 + piece, 5.0}, CellState::kOccupied).revision(10.0 + piece);
+  ASSERT_EQ(site.things.all().size(), 1u);
+  EXPECT_NEAR(site.things.all()[0].at->length_m, 7.9, kCells_m);
+}
+
+TEST(Things, AWallThatIsCorrectedByACellIsNoThing) {
+  DrawnSite site;
+  site.fill({0.05, 2.0, 0.05, 7.0}, CellState::kOccupied).revision(10.0);  // one cell before the wall
+  site.fill({0.05, 2.0, 0.05, 7.0}, CellState::kFree).revision(20.0);
+  EXPECT_TRUE(site.things.all().empty());
+  EXPECT_GE(site.things.corrections(), 200u);
+}
+
+TEST(Things, AFewCellsThatFlickerAreCorrections) {
+  DrawnSite site;
+  for (int i = 0; i < 10; ++i) {
+    site.fill({5.0, 5.0, 5.05, 5.05}, i % 2 == 0 ? CellState::kOccupied : CellState::kFree);
+    EXPECT_TRUE(site.revision(10.0 * i).empty());
+  }
+  EXPECT_TRUE(site.things.all().empty());
+  EXPECT_GT(site.things.corrections(), 0u);
+}
+
+TEST(Things, AFaceThatComesAndGoesAgainAndAgainIsToldOnce) {
+  DrawnSite site;
+  std::size_t told = 0;
+  for (int i = 0; i < 10; ++i) {
+    site.fill({5.0, 5.0, 6.0, 5.0}, i % 2 == 0 ? CellState::kOccupied : CellState::kFree);
+    told += site.revision(300.0 * i).size();
+  }
+  EXPECT_LE(told, 2u) << "glass: it came and went";
+}
+
+TEST(Things, AnUndoTakesAThingBack) {
+  DrawnSite site;
+  site.box(kBox).revision(10.0);
+  const auto told = site.undo(1, 20.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kTakenBack);
+  EXPECT_EQ(told[0].thing.id, 1u);
+}
+
+TEST(Things, AnUndoOfWhatHasGoneBringsItBack) {
+  DrawnSite site;
+  site.box(kBox).begin_with_what_is_drawn();
+  site.clear(kBox).revision(10.0);
+  const auto told = site.undo(1, 20.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kTakenBack) << "it never went";
+}
+
+TEST(Things, AnUndoOfAGoingLeavesTheThingWhereItStood) {
+  DrawnSite site;
+  site.box(kBox).revision(10.0);
+  site.clear(kBox).revision(20.0);
+  const auto told = site.undo(2, 30.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.id, 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kAppeared);
+  expect_outline(*told[0].thing.at, kBox);
+}
+
+TEST(Things, WhatTakesBackTellsOfNothingNew) {
+  DrawnSite site;
+  EXPECT_TRUE(site.box(kBox).revision(10.0, true).empty());
+}
+
+TEST(Things, SmallMovesOfOneBodyAreOneEventThatIsUpdated) {
+  DrawnSite site;
+  site.box(kBox).revision(10.0);
+  std::size_t news = 0;
+  Drawn box = kBox;
+  for (int i = 1; i <= 10; ++i) {
+    site.clear(box);
+    box.low_x += 0.1;
+    box.high_x += 0.1;
+    for (const auto& event : site.box(box).revision(10.0 + 60.0 * i)) news += event.is_new ? 1 : 0;
+  }
+  EXPECT_EQ(site.things.all().size(), 1u);
+  EXPECT_LE(news, 1u) << "told once that it moves";
+  expect_outline(*site.things.all()[0].at, box);
+}
+
+TEST(Things, TheSameRevisionsTellTheSame) {
+  const auto run = [] {
+    DrawnSite site;
+    std::vector<ThingEvent> events;
+    for (int i = 0; i < 6; ++i) {
+      const Drawn box{1.0 + 1.6 * i, 2.0, 2.0 + 1.6 * i, 3.0 + 0.2 * i};
+      for (auto& event : site.box(box).revision(10.0 * i)) events.push_back(event);
+      if (i % 2 == 1) site.clear(box);
+    }
+    return std::pair{events, site.things.all()};
+  };
+  const auto [events, all] = run();
+  const auto [events_again, all_again] = run();
+  ASSERT_EQ(events.size(), events_again.size());
+  for (std::size_t i = 0; i < events.size(); ++i) EXPECT_EQ(events[i].thing, events_again[i].thing);
+  EXPECT_EQ(all, all_again);
+}
+
+TEST(Things, WhatIsFollowedCellByCellStaysWithinItsBounds) {
+  DrawnSite site{{.most_cell_bytes = 20'000, .most_things = 20}};
+  for (int i = 0; i < 60; ++i) {
+    const Drawn box{0.5 + (i % 10) * 1.1, 0.5 + (i / 10 % 6) * 1.5, 1.1 + (i % 10) * 1.1, 1.3 + (i / 10 % 6) * 1.5};
+    site.box(box).revision(100.0 * i);
+  }
+  EXPECT_LE(site.things.cell_bytes(), 20'000u);
+  EXPECT_LE(site.things.all().size(), 20u);
+  EXPECT_EQ(site.things.all().size() + site.things.forgotten(), 60u);
+}
+
+TEST(Things, WhatIsNoLongerFollowedStillGoesUnderItsId) {
+  DrawnSite site{{.most_cell_bytes = 1}};
+  site.box(kBox).revision(10.0);
+  const auto told = site.clear(kBox).revision(500.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.id, 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kGone);
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::things
