@@ -37,6 +37,7 @@ int run_tool(int argc, const char* const* argv) {
   add_info(app);
   add_replay(app);
   add_sweep(app);
+  add_things(app);
   add_view(app);
   return answer_of(app, argc, argv);
 }

@@ -26,6 +26,7 @@ void add_import_carmen(CLI::App& import);
 
 void add_replay(CLI::App& app);
 void add_sweep(CLI::App& app);
+void add_things(CLI::App& app);
 void add_view(CLI::App& app);
 
 // under `deltamap score`

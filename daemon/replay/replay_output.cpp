@@ -3,6 +3,8 @@
 
 #include "core/files/grid_file.hpp"
 #include "daemon/maps/revision_keeper.hpp"
+#include "daemon/maps/stored_things.hpp"
+#include "daemon/outputs/thing_note.hpp"
 
 namespace deltamap::daemon {
 
@@ -13,7 +15,8 @@ FolderOutput::FolderOutput(const std::filesystem::path& folder, const OccupancyG
       store_{folder / "map_store.sqlite", first},
       trajectory_{folder / "trajectory.tum"},
       localization_log_{folder / "localization.csv"},
-      changes_{folder / "changes.jsonl"} {
+      changes_{folder / "changes.jsonl"},
+      told_things_{folder / "things.jsonl"} {
   localization_log_.write(csv_header());
 }
 
@@ -27,6 +30,7 @@ void FolderOutput::passed_over(const TrajectoryPoint& point) { trajectory_.write
 void FolderOutput::changed(const MapStep::Result& result, std::string_view method) {
   changes_.write(json_line(result.note));
   keep(store_, result, method, first_revision_);
+  for (const auto& event : take_result(things_, result)) told_things_.write(json_line(event));
 }
 
 void FolderOutput::settled() { store_.set_provisional({}); }
@@ -35,6 +39,7 @@ void FolderOutput::finish(const OccupancyGrid& newest) {
   trajectory_.flush();
   localization_log_.flush();
   changes_.flush();
+  told_things_.flush();
   write_grid(newest, folder_ / "map.yaml");
 }
 

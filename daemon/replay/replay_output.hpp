@@ -11,6 +11,7 @@
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/steps/map_step.hpp"
 #include "mapping/store/map_store.hpp"
+#include "mapping/things/things.hpp"
 
 namespace deltamap::daemon {
 
@@ -48,6 +49,8 @@ class FolderOutput : public ReplayOutput {
   LineFile trajectory_;
   LineFile localization_log_;
   LineFile changes_;
+  LineFile told_things_;
+  mapping::things::Things things_;
 };
 
 }  // namespace deltamap::daemon
