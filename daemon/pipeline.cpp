@@ -14,6 +14,7 @@
 #include "daemon/live/page_commands.hpp"
 #include "daemon/live/pose_stream.hpp"
 #include "daemon/maps/newest_map.hpp"
+#include "daemon/outputs/thing_note.hpp"
 #include "daemon/records/map_order.hpp"
 #include "daemon/records/recorder.hpp"
 #include "daemon/settings/memory_places.hpp"
@@ -64,6 +65,7 @@ struct Pipeline::State {
   LogTail log_tail;
   Options options;
   Telemetry telemetry;
+  ThingsBoard things;  // map → control, page
 
   Channel<SensorMessage> sensors{128};    // io → localization: the newest message, journaled
   Channel<DeltaWork> tracked_scans{128};  // localization → delta: the newest scan is not looked at for changes,
@@ -118,7 +120,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
       newest_lock{newest_map_lock(settings.map)},
       control{control::begun_control_desk(settings, control_wiring(), options.warn)},
-      page{begun_dashboard(settings, options.start, telemetry, page_control(control.get(), io), options.log,
+      page{begun_dashboard(settings, options.start, telemetry, things, page_control(control.get(), io), options.log,
                            options.warn)},
       poses{begun_pose_stream(settings, telemetry, options.warn)},
       incidents{begun_incident_keeper(incident_options(), telemetry, log_tail, {options.log, options.warn})},
@@ -157,6 +159,7 @@ control::ControlDesk::Wiring Pipeline::State::control_wiring() {
               },
           .incidents = [this] { return incidents_reply(settings.incidents); },
           .set_log_level = [this](LogLevel level) { return set_log_level(level); },
+          .things = [this] { return json_of(*things.newest()); },
           .patience_s = options.control_patience_s};
 }
 
@@ -244,7 +247,8 @@ MapStage::Wiring Pipeline::State::map_wiring() {
               [this](const MapRevision* revision, const ChangeNote& note) {
                 if (page) page->board().show(revision, note);
               },
-          .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); }};
+          .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); },
+          .things = things};
 }
 
 // --- the threads ---

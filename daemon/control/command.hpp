@@ -17,10 +17,12 @@ struct Command {
     kRelocalize,  ///< the robot stands at map_from_robot
     kUndo,        ///< Δ `revision` is taken back
     kRollBack,    ///< the map is M_`revision` again
+    kUndoThing,   ///< thing `thing` is taken back
     kSave         ///< map and pose on disk; changes nothing
   } kind = Kind::kSave;
   Pose2 map_from_robot;        ///< kRelocalize
   std::uint32_t revision = 0;  ///< kUndo, kRollBack
+  std::uint32_t thing = 0;     ///< kUndoThing
   std::uint64_t ticket = 0;    ///< names the command in its CommandOutcome
 };
 

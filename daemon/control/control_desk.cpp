@@ -15,21 +15,23 @@ using control::Request;
 
 namespace {
 
-/// Those that the localization thread takes as they are.
-std::optional<Command::Kind> plain_command_of(Request::Kind kind) {
+/// Of a request that the localization thread takes.
+Command::Kind command_of(Request::Kind kind) {
   switch (kind) {
     case Request::Kind::kPause:
       return Command::Kind::kPause;
     case Request::Kind::kResume:
       return Command::Kind::kResume;
-    case Request::Kind::kSave:
-      return Command::Kind::kSave;
     case Request::Kind::kUndo:
       return Command::Kind::kUndo;
+    case Request::Kind::kUndoThing:
+      return Command::Kind::kUndoThing;
     case Request::Kind::kRollBack:
       return Command::Kind::kRollBack;
+    case Request::Kind::kRelocalize:
+      return Command::Kind::kRelocalize;
     default:
-      return std::nullopt;
+      return Command::Kind::kSave;
   }
 }
 
@@ -49,7 +51,8 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
   const control::RequestAnswer answer = control::request_of_line(line);
   if (!answer.request) return reply(error_line(answer.refused));
   const Request& request = *answer.request;
-  const bool only_asks = request.kind == Request::Kind::kStatus || request.kind == Request::Kind::kIncidents;
+  const bool only_asks = request.kind == Request::Kind::kStatus || request.kind == Request::Kind::kIncidents ||
+                         request.kind == Request::Kind::kThings;
   if (!only_asks) wiring_.log("ctl: " + control::words_of(request));
   if (sender_is_gone && request.kind == Request::Kind::kDriveWander) {
     return wiring_.log("ctl: drive wander: not done, who asked for it waits no longer");
@@ -57,6 +60,8 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
   switch (request.kind) {
     case Request::Kind::kStatus:
       return reply(status_json_line(wiring_.telemetry, settings_, seconds(drivers::port::port_clock_now() - began_)));
+    case Request::Kind::kThings:
+      return reply(wiring_.things());
     case Request::Kind::kDriveOff:
       return drive(false, request, std::move(reply));
     case Request::Kind::kDriveWander:
@@ -73,13 +78,8 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
       return reply(wiring_.incidents());
     case Request::Kind::kLogLevel:
       return reply(with_log_level(request.log_level));
-    case Request::Kind::kRelocalize:
-      if (!wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position()))) {
-        return refuse(request, "that pose lies outside the map", reply);
-      }
-      return command(Command::Kind::kRelocalize, request, std::move(reply));
     default:
-      if (const auto kind = plain_command_of(request.kind)) command(*kind, request, std::move(reply));
+      return command(request, std::move(reply));
   }
 }
 
@@ -141,9 +141,13 @@ std::string ControlDesk::with_log_level(LogLevel level) const {
   return done_line("the log shows " + std::string(name_of(level)) + " and above until the next start");
 }
 
-void ControlDesk::command(Command::Kind kind, const Request& request, control::Server::Reply reply) {
+void ControlDesk::command(const Request& request, control::Server::Reply reply) {
+  const bool is_off_map = request.kind == Request::Kind::kRelocalize &&
+                          !wiring_.map.contains(wiring_.map.cell_at(request.map_from_robot.position()));
+  if (is_off_map) return refuse(request, "that pose lies outside the map", reply);
   const std::uint64_t ticket = next_ticket_++;
-  if (!wiring_.commands.try_send(Command{kind, request.map_from_robot, request.revision, ticket})) {
+  if (!wiring_.commands.try_send(
+          Command{command_of(request.kind), request.map_from_robot, request.revision, request.thing, ticket})) {
     return refuse(request, "too many commands wait already", reply);
   }
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});

@@ -35,6 +35,7 @@ class ControlDesk {
     std::function<bool(std::string words, std::uint64_t ticket)> mark{};  ///< false: too busy
     std::function<std::string()> incidents{};                             ///< the reply that lists them
     std::function<bool(LogLevel)> set_log_level;                          ///< false: this run's log has no levels
+    std::function<std::string()> things{};                                ///< one line of JSON: all things
     double patience_s = 1.0;  ///< then a sender is told that the daemon is busy
   };
   /// Listens from now on. Throws sockets::AlreadyServed, or std::runtime_error with one line that names the socket.
@@ -64,7 +65,7 @@ class ControlDesk {
   void reload(control::Server::Reply reply);
   [[nodiscard]] std::string reloaded() const;
   [[nodiscard]] std::string with_log_level(LogLevel level) const;
-  void command(Command::Kind kind, const control::Request& request, control::Server::Reply reply);
+  void command(const control::Request& request, control::Server::Reply reply);
 
   Settings settings_;
   Wiring wiring_;

@@ -17,8 +17,9 @@ using Kind = Request::Kind;
 constexpr double kFarthest_m = 1e6;
 constexpr double kLargest_deg = 1e6;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 6> kPlainCommands{{{"status", Kind::kStatus},
+constexpr std::array<std::pair<std::string_view, Kind>, 7> kPlainCommands{{{"status", Kind::kStatus},
                                                                            {"incidents", Kind::kIncidents},
+                                                                           {"things", Kind::kThings},
                                                                            {"pause", Kind::kPause},
                                                                            {"resume", Kind::kResume},
                                                                            {"save", Kind::kSave},
@@ -44,14 +45,26 @@ RequestAnswer relocalization_in(const Json& json) {
   return {Request{Kind::kRelocalize, {*x_m, *y_m, wrapped_angle(radians(*heading_deg))}}, ""};
 }
 
-/// Reads the requests "undo" and "rollback", which name a revision.
+std::optional<std::uint32_t> count_in(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  const bool is_count = found != json.end() && found->is_number_unsigned() &&
+                        found->get<std::uint64_t>() <= std::numeric_limits<std::uint32_t>::max();
+  return is_count ? std::optional{found->get<std::uint32_t>()} : std::nullopt;
+}
+
+/// Reads the requests "undo" and "rollback", which name a revision, or a thing.
 RequestAnswer map_order_in(const Json& json, Kind kind, const std::string& name) {
-  const auto revision = json.find("revision");
-  const bool is_number = revision != json.end() && revision->is_number_unsigned() &&
-                         revision->get<std::uint64_t>() <= std::numeric_limits<std::uint32_t>::max();
-  if (!is_number) return {std::nullopt, "'" + name + "' needs the number of a revision: 0, 1, 2 …"};
+  if (kind == Kind::kUndo && json.contains("thing")) {
+    const auto thing = count_in(json, "thing");
+    if (!thing) return {std::nullopt, "'undo' of a thing needs its id: 1, 2 …"};
+    Request request{Kind::kUndoThing, {}};
+    request.thing = *thing;
+    return {request, ""};
+  }
+  const auto revision = count_in(json, "revision");
+  if (!revision) return {std::nullopt, "'" + name + "' needs the number of a revision: 0, 1, 2 …"};
   Request request{kind, {}};
-  request.revision = revision->get<std::uint32_t>();
+  request.revision = *revision;
   return {request, ""};
 }
 
@@ -97,6 +110,7 @@ std::string_view name_of(Kind kind) {
   for (const auto& [name, order] : kMapOrders) {
     if (order == kind) return name;
   }
+  if (kind == Kind::kUndoThing) return "undo";
   if (kind == Kind::kLogLevel) return "log-level";
   if (kind == Kind::kMark) return "mark";
   if (kind == Kind::kRecordStart || kind == Kind::kRecordStop) return "record";
@@ -140,6 +154,7 @@ std::string line_of(const Request& request) {
   }
   if (is_map_order(request.kind)) json["revision"] = request.revision;
   if (request.kind == Kind::kMark) json["words"] = request.words;
+  if (request.kind == Kind::kUndoThing) json["thing"] = request.thing;
   if (request.kind == Kind::kLogLevel) json["level"] = name_of(request.log_level);
   if (request.kind == Kind::kRecordStart) json["mode"] = "start";
   if (request.kind == Kind::kRecordStop) json["mode"] = "stop";
@@ -170,6 +185,7 @@ std::string words_of(const Request& request) {
   if (request.kind == Kind::kDriveWander) return "drive wander";
   if (request.kind == Kind::kMark) return request.words.empty() ? "mark" : "mark \"" + request.words + "\"";
   if (request.kind == Kind::kLogLevel) return "log-level " + std::string(name_of(request.log_level));
+  if (request.kind == Kind::kUndoThing) return "undo thing " + std::to_string(request.thing);
   if (is_map_order(request.kind)) return std::string(name_of(request.kind)) + " " + std::to_string(request.revision);
   if (request.kind != Kind::kRelocalize) return std::string(name_of(request.kind));
   const Pose2& pose = request.map_from_robot;

@@ -26,6 +26,8 @@ struct Request {
     kReload,       ///< the settings file again: what can change is taken
     kRelocalize,   ///< the robot stands at map_from_robot
     kUndo,         ///< Δ `revision` alone is taken back
+    kUndoThing,    ///< `thing` is taken back
+    kThings,       ///< what has come, gone and moved
     kRollBack,     ///< the map is M_`revision` again
     kRecordStart,  ///< a recording that was stopped goes on
     kRecordStop,   ///< the recording stops; the daemon goes on
@@ -36,6 +38,7 @@ struct Request {
     kDriveWander
   } kind = Kind::kStatus;
   Pose2 map_from_robot{};                ///< kRelocalize
+  std::uint32_t thing = 0;               ///< kUndoThing
   std::uint32_t revision = 0;            ///< kUndo, kRollBack
   LogLevel log_level = LogLevel::kInfo;  ///< kLogLevel
   std::string words{};                   ///< kMark: one line, at most kLongestWords bytes

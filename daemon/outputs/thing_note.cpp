@@ -58,11 +58,10 @@ std::string json_line(const ThingEvent& event) {
   return json.dump() + "\n";
 }
 
-std::string json_of(const Thing& thing) { return as_json(thing).dump(); }
-
-std::string json_of(std::span<const Thing> things, std::uint64_t corrections, std::uint64_t forgotten) {
-  ThingJson json{{"things", ThingJson::array()}, {"corrections", corrections}, {"forgotten", forgotten}};
-  for (const Thing& thing : things) json["things"].push_back(as_json(thing));
+std::string json_of(const ThingList& list) {
+  ThingJson json{
+      {"ok", true}, {"things", ThingJson::array()}, {"corrections", list.corrections}, {"forgotten", list.forgotten}};
+  for (const Thing& thing : list.things) json["things"].push_back(as_json(thing));
   return json.dump();
 }
 

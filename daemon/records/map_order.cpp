@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/records/map_order.hpp"
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -22,7 +23,9 @@ GridGeometry lattice_of(int width, int height) { return {width, height, 1.0, {0.
 /// Decodes what notes_of() writes. Throws Json::exception for a malformed head; null for malformed bytes.
 std::shared_ptr<const SetCells> set_cells_in(const Json& head, std::string_view bytes) {
   SetCells set;
-  set.order.kind = head.at("order") == "undo" ? Kind::kUndo : Kind::kRollBack;
+  const auto& order = head.at("order");
+  set.order.kind = order == "undo" ? Kind::kUndo : order == "undo thing" ? Kind::kUndoThing : Kind::kRollBack;
+  set.order.thing = head.value("thing", 0U);
   set.order.revision = head.at("revision").get<std::uint32_t>();
   set.order.scan = head.at("scan").get<std::uint32_t>();
   set.order.scan_time = timestamp_from_ns(head.at("time_ns").get<std::int64_t>());
@@ -39,17 +42,20 @@ std::shared_ptr<const SetCells> set_cells_in(const Json& head, std::string_view 
 }  // namespace
 
 std::string reason_of(const MapOrder& order) {
+  if (order.kind == Kind::kUndoThing) return "undo of thing " + std::to_string(order.thing) + " by an operator";
   return (order.kind == Kind::kUndo ? "undo of " : "rolled back to ") + std::to_string(order.revision) +
          " by an operator";
 }
 
 std::vector<std::string> notes_of(const SetCells& set) {
-  const Json head{{"order", set.order.kind == Kind::kUndo ? "undo" : "rollback"},
-                  {"revision", set.order.revision},
-                  {"scan", set.order.scan},
-                  {"time_ns", unix_ns(set.order.scan_time)},
-                  {"width", set.width},
-                  {"height", set.height}};
+  constexpr std::array<const char*, 3> kNames{"undo", "rollback", "undo thing"};
+  Json head{{"order", kNames[static_cast<std::size_t>(set.order.kind)]},
+            {"revision", set.order.revision},
+            {"scan", set.order.scan},
+            {"time_ns", unix_ns(set.order.scan_time)},
+            {"width", set.width},
+            {"height", set.height}};
+  if (set.order.kind == Kind::kUndoThing) head["thing"] = set.order.thing;
   const auto bytes = mapping::store::encoded_changes(set.changes, lattice_of(set.width, set.height));
   std::string content = head.dump() + "\n";
   content.append(bytes.begin(), bytes.end());

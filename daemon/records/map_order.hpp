@@ -19,10 +19,12 @@ namespace deltamap::daemon {
 
 struct MapOrder {
   enum class Kind : std::uint8_t {
-    kUndo,     ///< Δ `revision` alone is taken back
-    kRollBack  ///< the map is M_`revision` again
+    kUndo,      ///< Δ `revision` alone is taken back
+    kRollBack,  ///< the map is M_`revision` again
+    kUndoThing  ///< the cells of `thing` are what they were before it
   } kind = Kind::kUndo;
   std::uint32_t revision = 0;
+  std::uint32_t thing = 0;
   std::uint32_t scan = 0;    ///< before which scan it was given
   Timestamp scan_time;       ///< Scan.time of that scan
   std::uint64_t ticket = 0;  ///< names the command in its CommandOutcome
@@ -33,7 +35,7 @@ using DeltaWork = std::variant<TrackedScan, MapOrder>;
 /// What the map thread reads, in order.
 using MapWork = std::variant<MapRequest, MapOrder>;
 
-/// "undo of 7 by an operator", "rolled back to 3 by an operator": the reason of the revision that comes of it.
+/// "undo of 7 by an operator", "rolled back to 3 …", "undo of thing 12 …": the reason of the revision that comes of it.
 [[nodiscard]] std::string reason_of(const MapOrder& order);
 
 /// The cells that an order has set.

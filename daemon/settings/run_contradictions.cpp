@@ -69,6 +69,7 @@ std::vector<NamedFile> files_of(const Settings& settings, const std::string& fil
     add_kept("log's index", index);
     add_kept("kept pose", kept.pose);
     add_kept("kept stability", kept.stability);
+    add_kept("kept things", kept.things);
     add_kept("saved map", kept.saved_map);
     add_kept("saved map's image", fs::path(kept.saved_map).replace_extension(".pgm"));
   }

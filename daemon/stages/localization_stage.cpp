@@ -17,6 +17,20 @@ constexpr double kStabilityPeriods = 12.0;            // stability is written on
 constexpr double kNoScan_s = 0.7;                     // without a scan, then commands are answered as not done
 constexpr std::chrono::milliseconds kLookEvery{200};  // for commands, while no message comes
 
+/// Nothing where the command does not concern the map.
+std::optional<MapOrder::Kind> map_order_of(control::Command::Kind kind) {
+  switch (kind) {
+    case control::Command::Kind::kUndo:
+      return MapOrder::Kind::kUndo;
+    case control::Command::Kind::kRollBack:
+      return MapOrder::Kind::kRollBack;
+    case control::Command::Kind::kUndoThing:
+      return MapOrder::Kind::kUndoThing;
+    default:
+      return std::nullopt;
+  }
+}
+
 std::optional<std::size_t> newest_scan_in(const std::vector<SensorMessage>& batch) {
   for (std::size_t i = batch.size(); i-- > 0;) {
     if (std::holds_alternative<Scan>(batch[i])) return i;
@@ -150,8 +164,8 @@ void LocalizationStage::take_commands(const Scan& scan) {
       save(*command);
     } else if (command->kind == control::Command::Kind::kRelocalize) {
       relocalize(*command, scan);
-    } else if (command->kind == control::Command::Kind::kUndo || command->kind == control::Command::Kind::kRollBack) {
-      order_map(*command, scan);
+    } else if (const auto kind = map_order_of(command->kind)) {
+      order_map(*command, *kind, scan);
     } else {
       pause(*command, scan);
     }
@@ -189,13 +203,14 @@ void LocalizationStage::answer_relocalize(std::uint32_t scan) {
   relocalized_.reset();
 }
 
-void LocalizationStage::order_map(const control::Command& command, const Scan& scan) {
+void LocalizationStage::order_map(const control::Command& command, MapOrder::Kind kind, const Scan& scan) {
   if (!mapping_enabled_) {
     return wiring_.answer({command.ticket, false, "'mapping.enabled' is false: nobody works on the map"});
   }
   MapOrder order;
-  order.kind = command.kind == control::Command::Kind::kUndo ? MapOrder::Kind::kUndo : MapOrder::Kind::kRollBack;
+  order.kind = kind;
   order.revision = command.revision;
+  order.thing = command.thing;
   order.scan = scan.number;
   order.scan_time = scan.time;
   order.ticket = command.ticket;

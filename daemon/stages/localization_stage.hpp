@@ -62,7 +62,7 @@ class LocalizationStage {
   void take_commands_without_scan();
   void pause(const control::Command& command, const Scan& scan);
   /// Passed on before the scan, whether or not Δ-mapping sees that.
-  void order_map(const control::Command& command, const Scan& scan);
+  void order_map(const control::Command& command, MapOrder::Kind kind, const Scan& scan);
   void relocalize(const control::Command& command, const Scan& scan);
   /// How well the scan fits there.
   void answer_relocalize(std::uint32_t scan);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/counted.hpp"
+#include "daemon/settings/memory_places.hpp"
 #include "drivers/port/port_clock.hpp"
 
 namespace deltamap::daemon {
@@ -18,6 +19,10 @@ constexpr std::chrono::seconds kRetryPeriod{1};  // between looks at outputs tha
 
 /// "revision 9 takes revision 7 back: 41 cells, 3 have changed since and stay"
 std::string words_of(const MapOrder& order, const MapRevision& made, const mapping::store::MapStore::Undoing& wanted) {
+  if (order.kind == MapOrder::Kind::kUndoThing) {
+    return "revision " + std::to_string(made.number) + " takes thing " + std::to_string(order.thing) +
+           " back from the next scan on: " + counted(made.changes.size(), "cell");
+  }
   const std::string number = std::to_string(order.revision);
   const std::string first = std::to_string(order.revision - wanted.held_before);
   const std::string all = wanted.held_before > 0 ? "revisions " + first + " to " + number : "revision " + number;
@@ -53,6 +58,12 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
                    StoreToKeep store, Wiring wiring)
     : wiring_{std::move(wiring)},
       step_{settings, start},
+      things_{{.store = store.store ? &*store.store : nullptr,
+               .out = out,
+               .kept = memory_places(settings.map.store).things},
+              wiring_.telemetry.outputs,
+              wiring_.warn,
+              port_clock_now()},
       outputs_{{.out = out,
                 .store_file = settings.map.store,
                 .newest_file = settings.map.newest,
@@ -61,16 +72,20 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
                 .method = step_.method()},
                wiring_.telemetry.outputs,
                wiring_.warn,
-               port_clock_now()} {}
+               port_clock_now()} {
+  wiring_.things.set(things_.list());
+}
 
 void MapStage::run(const std::deque<MapWork>& rest) {
   while (!wiring_.work.is_drained()) {
     pulse_.beat();
     if (const auto work = wiring_.work.receive_within(kRetryPeriod)) take(*work);
     outputs_.retry(port_clock_now());
+    things_.retry(port_clock_now());
   }
   for (const MapWork& work : rest) take(work);
   outputs_.close(port_clock_now());
+  things_.close(port_clock_now());
 }
 
 void MapStage::take(const MapWork& work) {
@@ -102,7 +117,7 @@ void MapStage::obey(const MapOrder& order) {
   const GridGeometry& geometry = step_.map()->geometry();
   mapping::store::MapStore::Undoing wanted;
   try {
-    wanted = outputs_.cells_of(order, *step_.map());
+    wanted = cells_of(order);
   } catch (const std::exception& error) {
     return wiring_.answer({order.ticket, false, std::string("not done: ") + error.what()});
   }
@@ -119,6 +134,11 @@ void MapStage::obey(const MapOrder& order) {
                       (behind.empty() ? std::string{} : "; not in the store yet: " + behind)});
 }
 
+mapping::store::MapStore::Undoing MapStage::cells_of(const MapOrder& order) const {
+  if (order.kind != MapOrder::Kind::kUndoThing) return outputs_.cells_of(order, *step_.map());
+  return {.changes = things_.undoing(order.thing, *step_.map())};
+}
+
 void MapStage::note(const SetCells& set) {
   for (std::string& part : notes_of(set)) (void)wiring_.recorder.try_send(std::move(part));
 }
@@ -132,6 +152,15 @@ void MapStage::hand_on(const MapStep::Result& result) {
     (void)wiring_.revisions.try_send(std::move(published));
   }
   outputs_.save(result, port_clock_now());
+  tell_things(result);
+}
+
+void MapStage::tell_things(const MapStep::Result& result) {
+  const auto events = things_.take(result, port_clock_now());
+  for (const auto& event : events) {
+    if (event.is_new) wiring_.log("thing " + std::to_string(event.thing.id) + ": " + words_of(event.thing));
+  }
+  if (!events.empty()) wiring_.things.set(things_.list());
 }
 
 }  // namespace deltamap::daemon

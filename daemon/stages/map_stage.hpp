@@ -11,6 +11,7 @@
 #include "core/messages.hpp"
 #include "daemon/control/command.hpp"
 #include "daemon/maps/map_outputs.hpp"
+#include "daemon/maps/things_keeper.hpp"
 #include "daemon/records/map_order.hpp"
 #include "daemon/records/recorder.hpp"
 #include "daemon/steps/map_step.hpp"
@@ -31,6 +32,7 @@ class MapStage {
     /// For the live page; null: refused.
     std::function<void(const MapRevision*, const ChangeNote&)> show;
     std::function<void(const control::CommandOutcome&)> answer;  ///< never waits
+    ThingsBoard& things;                                         ///< for control and live page
   };
   /// Begins the files of `out`.
   MapStage(const Settings& settings, const StartMap& start, const std::optional<std::filesystem::path>& out,
@@ -49,12 +51,16 @@ class MapStage {
   void tell_and_hand_on(const MapStep::Result& result);
   /// Answers whoever gave the order.
   void obey(const MapOrder& order);
+  /// Throws std::runtime_error: one line that says why there is nothing to do.
+  [[nodiscard]] mapping::store::MapStore::Undoing cells_of(const MapOrder& order) const;
   void note(const SetCells& set);
+  void tell_things(const MapStep::Result& result);
   /// To the localizer, the live page and the disk.
   void hand_on(const MapStep::Result& result);
 
   Wiring wiring_;
   MapStep step_;
+  ThingsKeeper things_;
   MapOutputs outputs_;
   ChangeTally changes_;
   Pulse pulse_;

@@ -234,6 +234,20 @@ std::size_t Things::cell_bytes() const {
   return bytes;
 }
 
+std::vector<CellChange> Things::undoing(std::uint32_t id, const OccupancyGrid& map) const {
+  std::vector<CellChange> changes;
+  const auto body = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& one) { return one.thing.id == id; });
+  if (body == bodies_.end()) return changes;
+  const auto add = [&](Cell cell, CellState before) {
+    if (map.at(cell) != before) changes.push_back({cell, map.at(cell), before});
+  };
+  body->come.visit(add);
+  body->gone.visit([&](Cell cell, CellState before) {
+    if (!body->come.before(cell)) add(cell, before);  // what stands there now came later
+  });
+  return changes;
+}
+
 std::vector<Thing> Things::all() const {
   std::vector<Thing> things;
   for (const Body& body : bodies_) {

@@ -29,6 +29,9 @@ class Things {
 
   /// Every thing that was told, in the order of their ids.
   [[nodiscard]] std::vector<Thing> all() const;
+  /// What sets the cells of a thing, as far as they are followed, back to what they were before it: those of `map` that
+  /// differ. Empty where there is no such thing, or nothing is left of it.
+  [[nodiscard]] std::vector<CellChange> undoing(std::uint32_t id, const OccupancyGrid& map) const;
   /// Cells that became occupied or ceased to be, and belong to no thing: corrections of surfaces, cells that flicker.
   [[nodiscard]] std::uint64_t corrections() const { return corrections_; }
   /// Things that are no longer listed.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Does every experiment and writes docs/results/experiments.md, ablation.md and unseen.md from what each leaves in its summary.json;
+"""Does every experiment and writes docs/results/experiments.md, ablation.md, unseen.md and things.md from what each leaves in its summary.json;
 what was measured and at which revision is kept in experiments.json beside it. Called by ./dev experiments.
 
   experiments.py [--quick] [--only NAME]... [--seed N] [--jobs N]
@@ -79,10 +79,22 @@ Every seed is another kind of building, first map, laser, robot and life in it (
 [known limits](known-limits.md).
 """
 
+THINGS = """# Things: told once, rightly, in their size?
+
+Written by `./dev experiments --only things`, or from what `deltamap-lab things` has left in its folder, on %s: %s.
+
+Containers come, go and are pushed aside in simulated worlds; what is told of them is held against what the fork-lift did. A change
+counts once a face of it was in view for 10 s, also where a later one, or one beside it, touched its place before more was seen.
+An event is what was told of a thing until it was told to be of another kind. *Right*: the kind, and the middle of what is told lies on
+the container's own floor. Figures of size are of those. In `pushes` containers stand side by side in rows and are pushed by less
+than a metre: a back that nobody sees cannot tell a move from a body put before the row. In `racks` nothing changes.
+"""
+
 # Their tables fill a page of their own. `empty`: what an empty table says; `seed`: of other seeds the page lies in the run's folder.
 Page = collections.namedtuple("Page", "file about empty seed")
 PAGES = {"ablation": Page("docs/results/ablation.md", ABLATION, "Not asked this time.", None),
-         "unseen": Page("docs/results/unseen.md", UNSEEN, "None.", 1000)}
+         "unseen": Page("docs/results/unseen.md", UNSEEN, "None.", 1000),
+         "things": Page("docs/results/things.md", THINGS, "None.", None)}
 
 
 def page_of(summary):

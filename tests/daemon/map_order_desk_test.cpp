@@ -95,6 +95,33 @@ TEST_F(MapOrderDeskTest, AnUndoIsARevisionLikeAnyOtherAndAReplayDoesItBitForBit)
   expect_same_files("live", "replayed");
 }
 
+TEST_F(MapOrderDeskTest, AnUndoOfAThingTakesItsCellsBackAndAReplayTellsTheSame) {
+  (void)run_live(4ms, [&](const Pipeline& pipeline) {
+    ASSERT_TRUE(has_revision(pipeline, 1));
+    EXPECT_EQ(asked({Kind::kPause, {}})["ok"], true);
+    ASSERT_TRUE(comes_true([&] { return !asked({Kind::kThings, {}})["things"].empty(); }));
+    const Json thing = asked({Kind::kThings, {}})["things"][0];
+    control::Request undo{Kind::kUndoThing, {}};
+    undo.thing = thing["thing"];
+    const Json reply = asked(undo);
+    EXPECT_EQ(reply["ok"], true) << reply;
+    EXPECT_NE(reply["message"].get<std::string>().find("takes thing 1 back from the next scan on: "), std::string::npos)
+        << reply;
+    EXPECT_TRUE(comes_true([&] { return asked({Kind::kThings, {}})["things"][0]["kind"] == "taken back"; }));
+    undo.thing = 99;
+    EXPECT_EQ(asked(undo)["error"], "not done: there is no thing 99");
+    EXPECT_EQ(asked({Kind::kResume, {}})["ok"], true);
+  });
+  EXPECT_EQ(operators_line("live")["reason"], "undo of thing 1 by an operator");
+  const std::string kept = test::content_of(memory_places(settings_.map.store).things);
+  EXPECT_FALSE(kept.empty());
+  EXPECT_EQ(test::content_of(folder_.path() / "live/things.jsonl"), kept);
+  std::filesystem::remove(settings_.map.store);
+  EXPECT_EQ(replay("live.pcapng", "replayed").journal_differences, 0u);
+  expect_same_files("live", "replayed");
+  EXPECT_EQ(test::content_of(folder_.path() / "replayed/things.jsonl"), kept);
+}
+
 TEST_F(MapOrderDeskTest, WhatWasUndoneDoesNotComeBackWithinTheDrive) {
   const std::uint32_t number = live_with_undo();
   const mapping::store::MapStore store{settings_.map.store};

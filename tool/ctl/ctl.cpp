@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "tool/ctl/daemon_reply.hpp"
 #include "tool/ctl/status_table.hpp"
 #include "tool/ctl/status_watch.hpp"
+#include "tool/ctl/things_table.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
@@ -33,6 +35,7 @@ struct CtlOptions {
   std::string level;
   std::vector<std::string> words;
   std::uint32_t revision = 0;
+  std::vector<std::string> undone;  // "7", or "thing" and "12"
   bool as_json = false;
 };
 
@@ -56,6 +59,8 @@ void ask(const CtlOptions& options, const Request& request) {
     std::cout << reply.line << '\n';
   else if (request.kind == Kind::kStatus)
     std::cout << status_table(reply.line);
+  else if (request.kind == Kind::kThings)
+    std::cout << things_table(reply.line);
   else
     std::cout << reply.words << '\n';
 }
@@ -127,6 +132,36 @@ void add_mark(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options) {
   });
 }
 
+/// A number, and nothing after it.
+std::uint32_t number_of(const std::string& text) {
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    throw CLI::ValidationError("undo", "needs a number, or 'thing' and a number, not '" + text + "'");
+  }
+  return number;
+}
+
+void add_undo(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options) {
+  CLI::App& order = *ctl.add_subcommand("undo", "take a revision or a thing back and keep what came later");
+  order
+      .add_option("K", options->undone,
+                  "number of the revision (deltamap map history STORE list); or thing N (ctl things)")
+      ->required()
+      ->expected(1, 2);
+  order.callback([options] {
+    Request request{Kind::kUndo, {}};
+    if (options->undone.size() == 1) {
+      request.revision = number_of(options->undone[0]);
+    } else {
+      if (options->undone[0] != "thing") (void)number_of(options->undone[0] + " " + options->undone[1]);
+      request.kind = Kind::kUndoThing;
+      request.thing = number_of(options->undone[1]);
+    }
+    ask(*options, request);
+  });
+}
+
 }  // namespace
 
 void add_ctl(CLI::App& app) {
@@ -141,7 +176,8 @@ void add_ctl(CLI::App& app) {
   CLI::App& map = *ctl.add_subcommand("map", "map save: the same as save")->require_subcommand(1);
   add_plain(map, options, "save", Kind::kSave, "write map and pose now");
   add_plain(ctl, options, "reload", Kind::kReload, "read the settings file again: take what can change, name the rest");
-  add_map_order(ctl, options, "undo", Kind::kUndo, "take revision K back and keep what came later");
+  add_plain(ctl, options, "things", Kind::kThings, "what has come, gone and moved");
+  add_undo(ctl, options);
   add_map_order(ctl, options, "rollback", Kind::kRollBack, "make the map what revision K was; nothing is lost");
   add_log_level(ctl, options);
   add_mark(ctl, options);

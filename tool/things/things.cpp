@@ -9,19 +9,18 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/counted.hpp"
 #include "core/files/grid_file.hpp"
 #include "core/utc_text.hpp"
 #include "daemon/maps/store_opening.hpp"
 #include "daemon/maps/stored_things.hpp"
 #include "daemon/outputs/thing_note.hpp"
+#include "tool/ctl/things_table.hpp"
 #include "tool/subcommands.hpp"
 
 namespace deltamap::tool {
 namespace {
 
 using mapping::store::MapStore;
-using mapping::things::Thing;
 using mapping::things::ThingEvent;
 using mapping::things::Things;
 
@@ -54,12 +53,6 @@ MapStore opened(const ThingsOptions& options) {
   return store;
 }
 
-void print(const Thing& thing) {
-  std::printf("%5u  %-10s  %s  %s  %4.2f  %s\n", thing.id, std::string(name_of(thing.kind)).c_str(),
-              utc_text(thing.first_seen).c_str(), utc_text(thing.last_seen).c_str(), thing.confidence,
-              words_of(thing).c_str());
-}
-
 void print_event(const ThingEvent& event) {
   std::printf("%s  M%-6u %s thing %u: %s\n", utc_text(event.time).c_str(), event.revision, event.is_new ? "+" : " ",
               event.thing.id, words_of(event.thing).c_str());
@@ -74,15 +67,8 @@ void tell_things(const ThingsOptions& options) {
   };
   const Things things = daemon::things_of(store, tell_event);
   if (options.events) return;
-  const std::vector<Thing> all = things.all();
-  if (options.as_json) {
-    std::cout << daemon::json_of(all, things.corrections(), things.forgotten()) << '\n';
-    return;
-  }
-  if (!all.empty()) std::printf("%5s  %-10s  %-24s  %-24s  %s  %s\n", "thing", "", "first", "last", "conf", "what");
-  for (const Thing& thing : all) print(thing);
-  std::printf("%s of %s; %s that are no thing\n", counted(all.size(), "thing").c_str(),
-              counted(store.newest(), "revision").c_str(), counted(things.corrections(), "changed cell").c_str());
+  const std::string list = daemon::json_of({things.all(), things.corrections(), things.forgotten()});
+  std::cout << (options.as_json ? list + "\n" : things_table(list));
 }
 
 }  // namespace

@@ -267,6 +267,42 @@ export function draw_wish(context, view, { wish }) {
   robot_sign(context, x, y, wish.heading, Math.max(LEAST_ROBOT_PX, ROBOT_M * view.scale), ink_of("--accent"));
 }
 
+function sign_thing(context, ink, dashes) {
+  context.strokeStyle = ink_of(ink);
+  context.setLineDash(dashes);
+  context.lineWidth = 1.5;
+  context.strokeRect(3, 2, 16, 10);
+}
+
+/// Side by side: what nobody has seen of one that stands there is dashed.
+function outline_thing(context, view, outline, ink, is_picked, dashes_of) {
+  const corners = outline.polygon_m.map(([x, y]) => view.to_screen(x, y));
+  context.strokeStyle = ink_of(ink);
+  context.lineWidth = is_picked ? 3.5 : 1.5;
+  corners.forEach(([x, y], side) => {
+    context.setLineDash(dashes_of(side));
+    context.beginPath();
+    context.moveTo(x, y);
+    context.lineTo(...corners[(side + 1) % 4]);
+    context.stroke();
+  });
+  context.setLineDash([]);
+}
+
+function draw_things(context, view, { things, picked_thing }) {
+  for (const thing of things ?? []) {
+    const is_picked = thing === picked_thing;
+    if (thing.from && (is_picked || !thing.at)) outline_thing(context, view, thing.from, "--blue", is_picked, () => [6, 2]);
+    if (!thing.at) continue;
+    outline_thing(context, view, thing.at, "--red", is_picked, (side) => (thing.at.sides_seen[side] ? [] : [2, 3]));
+    const [x, y] = view.to_screen(thing.at.x_m, thing.at.y_m);
+    context.fillStyle = ink_of("--text");
+    context.textAlign = "center";
+    context.fillText(thing.thing, x, y + 4);
+    context.textAlign = "start";
+  }
+}
+
 // From below to above.
 export const LAYERS = [
   { id: "path", label: "path", draw: draw_path, sign: (c) => { c.strokeStyle = ink_of("--sky"); c.lineWidth = 2; c.beginPath(); c.moveTo(1, 12); c.lineTo(9, 4); c.lineTo(21, 7); c.stroke(); } },
@@ -274,6 +310,9 @@ export const LAYERS = [
     keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink_of("--orange"))],
            ["seen gone", (c) => { c.strokeStyle = ink_of("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
   { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink_of("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
+  { id: "things", label: "things", is_of_now: true, draw: draw_things,
+    keys: [["stands there, seen sides", (c) => sign_thing(c, "--red", [])], ["stands there, sides that nobody has seen", (c) => sign_thing(c, "--red", [2, 3])],
+           ["stood there and has gone", (c) => sign_thing(c, "--blue", [6, 2])]] },
   { id: "stored", label: "scans kept for the map", is_of_now: true, draw: draw_stored,
     keys: [["of the running Δ-phase", (c) => sign_stored(c, false)], ["of a set that waits", (c) => sign_stored(c, true)]] },
   { id: "scan", label: "scan: what its beams say", is_of_now: true, draw: draw_scan,

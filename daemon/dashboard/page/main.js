@@ -12,6 +12,7 @@ import { draw_delta, draw_scale_bar, draw_wish, fill_delta_legend, fill_legend, 
 import { MapView } from "./map_view.js";
 import { show_link, show_pose, show_run, show_status } from "./panels.js";
 import { Run } from "./run.js";
+import { outline_of, Things } from "./things.js";
 
 const MOST_SAMPLES = 3600;
 const NARROW_PX = 1400; // the legend would take a third of the map
@@ -109,6 +110,24 @@ const run = new Run(view, model, (message) => connection.take(message), (time) =
   charts.draw_soon();
 });
 /// One slider for time and revision: with a revision in view, the newest one of that time.
+
+/// Shown where it is; a person who may command can take it back.
+function pick_thing(thing, is_asked) {
+  if (!is_asked) return view.draw_soon();
+  control.row.hide();
+  if (!thing) return view.draw_soon();
+  view.set_follow(false);
+  const { x_m, y_m, length_m } = outline_of(thing);
+  view.scale = Math.max(view.scale, Math.min(40, 0.2 * Math.min(view.free_room().wide, view.free_room().high) / Math.max(0.5, length_m)));
+  view.show(x_m, y_m);
+  if (!may_command) return control.row.tell(`Thing ${thing.thing}: ${thing.words}`);
+  const undo = `Undo thing ${thing.thing}`;
+  control.row.ask(`Thing ${thing.thing}: ${thing.words}. Its cells can become what they were before it.`,
+                  [[undo, () => control.row.run({ command: "undo", thing: thing.thing }, "taking it back …")]]);
+}
+let may_command = false;
+const things = new Things(model, pick_thing);
+
 run.on_walk = (time) => {
   if (!history.is_open) return;
   const before = model.changes.filter((change) => change.accepted && change.time <= time).map((change) => change.revision);
@@ -157,6 +176,8 @@ const on = {
     control.allow(hello.control);
     if (!hello.run) incidents.look();
     history.allow_undo(Boolean(hello.control));
+    may_command = Boolean(hello.control);
+    things.clear();
     history.close();
     model.samples.length = model.changes.length = 0;  // the stream begins with the past
     model.particles = model.stored = [];

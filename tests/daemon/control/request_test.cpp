@@ -9,8 +9,9 @@ namespace {
 using Kind = Request::Kind;
 
 TEST(Request, EveryRequestSurvivesTheSocket) {
-  for (const Kind kind : {Kind::kStatus, Kind::kIncidents, Kind::kMark, Kind::kPause, Kind::kResume, Kind::kSave,
-                          Kind::kReload, Kind::kRecordStart, Kind::kRecordStop, Kind::kDriveOff, Kind::kDriveWander}) {
+  for (const Kind kind :
+       {Kind::kStatus, Kind::kIncidents, Kind::kThings, Kind::kMark, Kind::kPause, Kind::kResume, Kind::kSave,
+        Kind::kReload, Kind::kRecordStart, Kind::kRecordStop, Kind::kDriveOff, Kind::kDriveWander}) {
     const Request request{kind, {}};
     const RequestAnswer answer = request_of_line(line_of(request));
     ASSERT_TRUE(answer.request) << line_of(request) << answer.refused;
@@ -38,6 +39,16 @@ TEST(Request, EveryRequestSurvivesTheSocket) {
       EXPECT_EQ(*back.request, order);
     }
   }
+}
+
+TEST(Request, AnUndoNamesARevisionOrAThing) {
+  Request undo{Kind::kUndoThing, {}};
+  undo.thing = 12;
+  EXPECT_EQ(line_of(undo), R"({"command":"undo","thing":12})");
+  EXPECT_EQ(request_of_line(line_of(undo)).request, undo);
+  EXPECT_EQ(words_of(undo), "undo thing 12");
+  for (const char* line : {R"({"command":"undo","thing":-1})", R"({"command":"undo","thing":"12","revision":7})"})
+    EXPECT_EQ(request_of_line(line).refused, "'undo' of a thing needs its id: 1, 2 …") << line;
 }
 
 TEST(Request, WhatIsWrongIsSaidInOneLine) {

@@ -40,7 +40,7 @@ std::uint16_t free_port() {
 class DashboardDeskTest : public testing::Test {
  protected:
   void start() {
-    desk_ = std::make_unique<DashboardDesk>(settings_, start_, telemetry_);
+    desk_ = std::make_unique<DashboardDesk>(settings_, start_, telemetry_, things_);
     thread_ = std::thread([this] { desk_->run(); });
   }
   ~DashboardDeskTest() override {
@@ -77,6 +77,7 @@ class DashboardDeskTest : public testing::Test {
   Settings settings_;
   StartMap start_{.map = std::make_shared<const OccupancyGrid>(test::drawn_grid({"#..", "#..", "###"}, 0.5))};
   Telemetry telemetry_;
+  ThingsBoard things_;
   std::unique_ptr<DashboardDesk> desk_;
   std::thread thread_;
 };
@@ -187,6 +188,21 @@ TEST_F(DashboardDeskTest, TheHistoryListsWhatThisRunHasChanged) {
   ASSERT_EQ(history["changes"].size(), 1u);
   EXPECT_EQ(history["changes"][0]["acceptance"], 0.97);
   EXPECT_EQ(history["changes"][0]["accepted"], true);
+}
+
+TEST_F(DashboardDeskTest, TellsOfThings) {
+  start();
+  EXPECT_EQ(Json::parse(got("/api/things").body)["things"], Json::array());
+  mapping::things::Thing thing;
+  thing.id = 12;
+  thing.at = mapping::things::Outline{{1.0, 2.0}, 2.4, 1.6, 0.0, {true, false, false, false}};
+  things_.set(std::make_shared<const ThingList>(ThingList{{thing}, 7, 1}));
+  const Json list = Json::parse(got("/api/things").body);
+  ASSERT_EQ(list["things"].size(), 1u);
+  EXPECT_EQ(list["things"][0]["thing"], 12);
+  EXPECT_EQ(list["things"][0]["at"]["polygon_m"][0], (Json{2.2, 1.2}));
+  EXPECT_EQ(list["things"][0]["words"], "container-like body of 2.4 × 1.6 m appeared at 1.00, 2.00");
+  EXPECT_EQ(list["corrections"], 7);
 }
 
 TEST_F(DashboardDeskTest, MetricsFollowThePrometheusTextFormat) {

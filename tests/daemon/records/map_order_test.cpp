@@ -35,6 +35,18 @@ SetCells large_order() {
   return order_for(400, 300, std::move(changes));
 }
 
+TEST(MapOrder, OfAThingSurvivesTheRecordingToo) {
+  SetCells set = order_for(10, 10, {{{1, 2}, CellState::kFree, CellState::kOccupied}});
+  set.order.kind = MapOrder::Kind::kUndoThing;
+  set.order.thing = 12;
+  Journal journal;
+  for (const std::string& note : notes_of(set)) journal.read(note);
+  ASSERT_EQ(journal.commands().size(), 1u);
+  EXPECT_EQ(journal.commands()[0].set->order.kind, MapOrder::Kind::kUndoThing);
+  EXPECT_EQ(journal.commands()[0].set->order.thing, 12u);
+  EXPECT_EQ(reason_of(journal.commands()[0].set->order), "undo of thing 12 by an operator");
+}
+
 TEST(MapOrder, SurvivesTheRecordingWhateverItsSize) {
   const SetCells set = large_order();
   const std::vector<std::string> notes = notes_of(set);

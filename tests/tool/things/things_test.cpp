@@ -85,7 +85,7 @@ TEST_F(ThingsCommand, TellsWhatStandsWhere) {
   const ToolRun table = things({file});
   EXPECT_EQ(table.exit_code, 0);
   EXPECT_NE(table.output.find("container-like body of 2.4"), std::string::npos) << table.output;
-  EXPECT_NE(table.output.find("1 thing of 3 revisions"), std::string::npos) << table.output;
+  EXPECT_NE(table.output.find("1 thing; 0 changed cells belong to none"), std::string::npos) << table.output;
 }
 
 TEST_F(ThingsCommand, RefusesAStoreOfAnotherSite) {
@@ -102,7 +102,7 @@ TEST_F(ThingsCommand, WithoutRevisionsThereIsNothingToTell) {
   mapping::store::MapStore{empty, site.map};
   const ToolRun run = things({empty});
   EXPECT_EQ(run.exit_code, 0) << run.errors;
-  EXPECT_NE(run.output.find("0 things of 0 revisions"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("0 things; 0 changed cells belong to none"), std::string::npos) << run.output;
 }
 
 TEST_F(ThingsCommand, AFolderWithoutAStoreIsRefused) {
