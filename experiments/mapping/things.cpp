@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// `things`: what is told of containers that come, go and are pushed aside, held against what the fork-lift did. The
+// hall of Table 2, the depot, the hall of pushes, racks in which nothing changes, and unseen worlds.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "daemon/maps/stored_things.hpp"
+#include "daemon/telemetry/stage.hpp"
+#include "experiments/drive/first_map.hpp"
+#include "experiments/drive/mapping_drive.hpp"
+#include "experiments/mapping/unseen_drive.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/watch/mapping_run.hpp"
+#include "experiments/watch/thing_score.hpp"
+#include "simulation/drawn/unseen_world.hpp"
+#include "simulation/score/change_watch.hpp"
+
+namespace deltamap::experiments {
+namespace {
+
+constexpr double kLookEvery_s = 0.2;
+constexpr int kLookBeams = 181;
+constexpr int kLookFaceBeams = 3;
+constexpr double kSeenForThings_s = 10.0;
+constexpr double kThingsMinutes = 30.0;
+constexpr double kQuickThingsMinutes = 5.0;
+
+struct ThingsRun {
+  simulation::Scenario scenario;
+  simulation::VirtualDriveParams drive;
+  std::shared_ptr<const OccupancyGrid> first;
+  daemon::Settings settings;
+  double minutes = kThingsMinutes;
+  bool knows_start = true;
+};
+
+/// What a drive tells of things, and what is true.
+struct Followed {
+  std::vector<mapping::things::ThingEvent> events;
+  std::vector<TrueChange> changes;
+  std::size_t revisions = 0;
+  std::size_t things = 0;
+  std::size_t most_cell_bytes = 0;
+  double cpu_s = 0.0;
+};
+
+Followed followed(const ThingsRun& run) {
+  Followed all;
+  MappingDrive drive{run.scenario, run.drive, run.settings, {run.first}, run.knows_start};
+  simulation::score::ChangeWatch watch{run.scenario, run.first->geometry()};
+  mapping::things::Things things;
+  double next_look_s = 0.0;
+  for (double passed_s = 0.0; passed_s < 60.0 * run.minutes;) {
+    const Mapped scan = drive.next();
+    passed_s = scan.passed_s;
+    for (const simulation::Change& change : scan.changes)
+      watch.apply(change, scan.time, scan.map_from_robot.position());
+    for (const simulation::MoverEvent& event : scan.events) watch.apply(event);
+    if (passed_s >= next_look_s) {
+      next_look_s += kLookEvery_s;
+      const Pose2 map_from_laser = scan.map_from_robot * run.scenario.laser.optics.robot_from_laser;
+      watch.look(watch.view_from(map_from_laser, run.drive.max_range_m, kLookBeams, scan.about.surfaces()),
+                 kLookEvery_s, kLookFaceBeams);
+    }
+    if (!scan.update || !scan.update->revision) continue;
+    ++all.revisions;
+    const double began_s = daemon::thread_cpu_s();
+    const auto told = daemon::take_result(things, *scan.update);
+    all.cpu_s += daemon::thread_cpu_s() - began_s;
+    all.events.insert(all.events.end(), told.begin(), told.end());
+    all.most_cell_bytes = std::max(all.most_cell_bytes, things.cell_bytes());
+  }
+  std::vector<simulation::score::ScoredChange> watched;
+  for (const simulation::score::Watched& one : watch.watched()) {
+    watched.push_back(one.change);
+    watched.back().seen_s = one.witness.longest_seen_s();
+  }
+  all.changes = true_changes(watched, kSeenForThings_s);
+  all.things = things.all().size();
+  return all;
+}
+
+Outcome outcome_of(const ThingsRun& run, const std::string& world, std::uint64_t seed) {
+  const Followed all = followed(run);
+  const ThingScore score = score_of(told_at_last(all.events, mapping::things::ThingsParams{}.one_look_s), all.changes);
+  const auto whole = [](std::size_t number) { return static_cast<double>(number); };
+  Outcome outcome;
+  outcome.labels = {{"world", world}, {"seed", std::to_string(seed)}};
+  outcome.numbers = {{"changes_seen", whole(score.changes)},
+                     {"unfound", whole(score.unfound)},
+                     {"events", whole(score.events)},
+                     {"most_events", whole(score.most_events)},
+                     {"right", whole(score.right)},
+                     {"right_size", whole(score.right_size)},
+                     {"moved", whole(score.moved)},
+                     {"moved_right", whole(score.moved_right)},
+                     {"told", whole(score.told)},
+                     {"told_of_nothing", whole(score.wrong)},
+                     {"told_moved", whole(score.told_moved)},
+                     {"wrong_pairs", whole(score.wrong_pairs)},
+                     {"revisions", whole(all.revisions)},
+                     {"things", whole(all.things)},
+                     {"minutes", run.minutes},
+                     {"cell_kb", whole(all.most_cell_bytes) / 1e3},
+                     {"revision_cpu_ms", all.revisions == 0 ? 0.0 : 1e3 * all.cpu_s / whole(all.revisions)}};
+  return outcome;
+}
+
+struct ThingsWorld {
+  std::string name;
+  std::string scenario;
+  int seeds;
+};
+
+const std::array kThingsWorlds{ThingsWorld{"hall", "hall.yaml", 3}, ThingsWorld{"depot", "depot.yaml", 3},
+                               ThingsWorld{"pushes", "hall_shifts.yaml", 2}, ThingsWorld{"racks", "racks.yaml", 1}};
+constexpr UnseenRuns kThingsUnseen{10, 1, kThingsMinutes, kQuickThingsMinutes};
+
+ThingsRun unseen_things_run(std::uint64_t seed, double minutes, const Options& options) {
+  const simulation::drawn::UnseenKind kind = simulation::drawn::unseen_kind(seed);
+  simulation::drawn::UnseenWorld world = simulation::drawn::unseen_world(kind, seed);
+  return {world.drawn.scenario,
+          world.drawn.drive,
+          std::make_shared<const OccupancyGrid>(std::move(world.first_map)),
+          settings_of(options, "evidence"),
+          minutes,
+          kind.knows_start};
+}
+
+std::vector<Run> things_runs(const Options& options) {
+  const double minutes = options.minutes.value_or(options.quick ? kQuickThingsMinutes : kThingsMinutes);
+  std::vector<Run> runs;
+  for (const ThingsWorld& world : kThingsWorlds) {
+    const auto scenario = scenario_of(options, world.scenario);
+    for (const std::uint64_t seed : options.seeds(world.seeds)) {
+      runs.push_back({world.name + "-seed" + std::to_string(seed), [=] {
+                        ThingsRun run{*scenario, {}, first_map(*scenario), settings_of(options, "evidence"), minutes};
+                        run.drive.seed = seed;
+                        run.drive.forklift = scenario->forklift;
+                        return outcome_of(run, world.name, seed);
+                      }});
+    }
+  }
+  for (Run& run : unseen_runs(options, kThingsUnseen, [options](std::uint64_t seed, double drive_minutes) {
+         return outcome_of(unseen_things_run(seed, drive_minutes, options), "unseen", seed);
+       })) {
+    run.name = "unseen-" + run.name;
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+double things_sum(const std::vector<const Outcome*>& outcomes, const char* number) {
+  double sum = 0.0;
+  for (const Outcome* outcome : outcomes) sum += outcome->number(number);
+  return sum;
+}
+
+/// NaN where there is nothing to have a share of.
+double things_share(const std::vector<const Outcome*>& outcomes, const char* part, const char* all) {
+  const double whole = things_sum(outcomes, all);
+  return whole > 0.0 ? things_sum(outcomes, part) / whole : std::numeric_limits<double>::quiet_NaN();
+}
+
+double things_most(const std::vector<const Outcome*>& outcomes, const char* number) {
+  double most = 0.0;
+  for (const Outcome* outcome : outcomes) most = std::max(most, outcome->number(number));
+  return most;
+}
+
+void add_figures(Report& report, const std::string& world, const std::vector<const Outcome*>& of_it) {
+  const auto add = [&](const char* name, double value, std::optional<Target> target, const char* unit = "") {
+    report.figures.push_back({world + ": " + name, value, unit, target});
+  };
+  const double hours = things_sum(of_it, "minutes") / 60.0;
+  add("events told that belong to no change, an hour", things_sum(of_it, "told_of_nothing") / hours, {});
+  add("revisions an hour", things_sum(of_it, "revisions") / hours, {});
+  if (things_sum(of_it, "changes_seen") == 0.0) return;
+  add("changes that were seen for 10 s", things_sum(of_it, "changes_seen"), {});
+  add("events a change, mean", things_share(of_it, "events", "changes_seen"), Target{.most = 1.1});
+  add("events of one change, most", things_most(of_it, "most_events"), Target{.most = 3.0});
+  add("changes of which nothing was told", things_share(of_it, "unfound", "changes_seen"), {});
+  add("kind and place right", things_share(of_it, "right", "changes_seen"), Target{.least = 0.97});
+  add("of those: both sides within 0.15 m", things_share(of_it, "right_size", "right"), Target{.least = 0.9});
+  add("moved things told as moved", things_share(of_it, "moved_right", "moved"), Target{.least = 0.9});
+  add("events \"moved\" that were none", things_share(of_it, "wrong_pairs", "told"), Target{.most = 0.02});
+}
+
+TextTable table_of_runs(const std::vector<Outcome>& outcomes) {
+  constexpr std::array kColumns{"changes_seen", "unfound",     "events",      "most_events", "right",
+                                "right_size",   "moved",       "moved_right", "told",        "told_of_nothing",
+                                "told_moved",   "wrong_pairs", "revisions",   "things"};
+  TextTable table{"Each run", {"world", "seed"}, {}};
+  table.columns.insert(table.columns.end(), kColumns.begin(), kColumns.end());
+  for (const Outcome& outcome : outcomes) {
+    std::vector<std::string> row{outcome.label("world"), outcome.label("seed")};
+    for (const char* column : kColumns) row.push_back(text_of(outcome.number(column)));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Report things_report(const std::vector<Outcome>& outcomes) {
+  Report report;
+  std::vector<const Outcome*> all;
+  for (const std::string world : {"hall", "depot", "pushes", "racks", "unseen"}) {
+    std::vector<const Outcome*> of_it;
+    for (const Outcome& outcome : outcomes) {
+      if (outcome.label("world") == world) of_it.push_back(&outcome);
+    }
+    if (of_it.empty()) continue;
+    add_figures(report, world, of_it);
+    all.insert(all.end(), of_it.begin(), of_it.end());
+  }
+  report.figures.push_back({"processor a revision, most", things_most(all, "revision_cpu_ms"), "ms", std::nullopt});
+  report.figures.push_back(
+      {"cells that are followed, most", things_most(all, "cell_kb"), "kB", Target{.most = 3000.0}});
+  report.tables.push_back(table_of_runs(outcomes));
+  return report;
+}
+
+}  // namespace
+
+Experiment things_experiment() {
+  return {.name = "things",
+          .what = "Containers that come, go and are pushed aside: told once, rightly, in their size?",
+          .runs = things_runs,
+          .report = things_report,
+          .times = Experiment::Times::kThread};
+}
+
+}  // namespace deltamap::experiments

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The things that a run has told of, held against what the fork-lift did: how many events a change became, whether
+// kind, place and size are right, and what was told that never happened.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mapping/things/things.hpp"
+#include "simulation/score/change_score.hpp"
+
+namespace deltamap::experiments {
+
+/// One act of the fork-lift.
+struct TrueChange {
+  Timestamp time;
+  simulation::ChangeKind kind = simulation::ChangeKind::kRemoved;
+  std::optional<simulation::Box> from{};
+  std::optional<simulation::Box> at{};
+  bool is_seen = false;  ///< each of its places for long enough, and no later act touched them
+};
+
+/// A removal, an addition, or both of a shift.
+[[nodiscard]] std::vector<TrueChange> true_changes(std::span<const simulation::score::ScoredChange> watched,
+                                                   double seen_least_s);
+
+/// What was told of a thing until it was told to be of another kind, with how it was told at last.
+struct Told {
+  mapping::things::Thing thing;
+  Timestamp time;  ///< when it was first told
+};
+/// Words that were taken back, or replaced by another kind within `one_look_s`, are left out.
+[[nodiscard]] std::vector<Told> told_at_last(std::span<const mapping::things::ThingEvent> events, double one_look_s);
+
+/// The newest act before that an event can be of; one that it tells rightly comes first. Null: there is none.
+[[nodiscard]] const TrueChange* change_of(const Told& told, std::span<const TrueChange> changes);
+
+struct ThingScore {
+  std::size_t changes = 0;      ///< that were seen
+  std::size_t unfound = 0;      ///< of those: no event
+  std::size_t events = 0;       ///< of those
+  std::size_t most_events = 0;  ///< of one of them
+  std::size_t right = 0;        ///< of those: kind and place are right
+  std::size_t right_size = 0;   ///< of those that are right: both sides within the tolerance
+  std::size_t moved = 0;        ///< true shifts that were seen
+  std::size_t moved_right = 0;  ///< told as moved
+  std::size_t told = 0;         ///< events in all
+  std::size_t wrong = 0;        ///< events that belong to no true change
+  std::size_t told_moved = 0;   ///< events "moved"
+  std::size_t wrong_pairs = 0;  ///< of those: no true shift
+};
+
+[[nodiscard]] ThingScore score_of(std::span<const Told> told, std::span<const TrueChange> changes);
+
+}  // namespace deltamap::experiments
