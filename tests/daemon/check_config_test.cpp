@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/files/file_lock.hpp"
 #include "core/files/grid_file.hpp"
 #include "daemon/dashboard/server.hpp"
 #include "daemon/kept/kept_drive.hpp"
