@@ -88,6 +88,9 @@ counts once a face of it was in view for 10 s, also where a later one, or one be
 An event is what was told of a thing until it was told to be of another kind. *Right*: the kind, and the middle of what is told lies on
 the container's own floor. Figures of size are of those. In `pushes` containers stand side by side in rows and are pushed by less
 than a metre: a back that nobody sees cannot tell a move from a body put before the row. In `racks` nothing changes.
+
+*Events a change* counts a change of which nothing was told as none, so that of the others the mean is higher. *Events "moved" that
+were none* are a share of all events; of the events "moved" they are `wrong_pairs` of `told_moved` in the last table.
 """
 
 # Their tables fill a page of their own. `empty`: what an empty table says; `seed`: of other seeds the page lies in the run's folder.

@@ -69,7 +69,7 @@ export class TaskRow {
       const button = document.createElement("button");
       button.type = "button";
       button.textContent = label;
-      explain(button, label.replace(/ M\d+$/, ""));
+      explain(button, label.replace(/ (M|thing )\d+$/, ""));
       button.addEventListener("click", act);
       return button;
     }));
