@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <thread>
 
@@ -79,6 +80,7 @@ void expect_whole(const StoredIncident& stored) {
 
 TEST(IncidentKill, LeavesEachIncidentWholeOrNotThere) {
   constexpr int kKills = 60;
+  double most_us = 120'000.0;  // until a kill; more on a machine on which nothing comes to be by then
   Random random{7};
   std::size_t seen = 0;
   std::size_t unfinished = 0;
@@ -87,7 +89,7 @@ TEST(IncidentKill, LeavesEachIncidentWholeOrNotThere) {
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) keep_for_ever(folder.path());
-    std::this_thread::sleep_for(std::chrono::microseconds{static_cast<int>(random.uniform(5'000.0, 120'000.0))});
+    std::this_thread::sleep_for(std::chrono::microseconds{static_cast<int>(random.uniform(5'000.0, most_us))});
     ASSERT_EQ(::kill(child, SIGKILL), 0);
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);
@@ -96,7 +98,9 @@ TEST(IncidentKill, LeavesEachIncidentWholeOrNotThere) {
       if (!entry.is_directory() || entry.path().filename().string().starts_with('.')) continue;
       EXPECT_NO_THROW((void)read_incident(entry.path())) << entry.path();
     }
-    for (const StoredIncident& stored : incidents_in(folder.path())) {
+    const std::vector<StoredIncident> all = incidents_in(folder.path());
+    if (all.empty()) most_us = std::min(1.5 * most_us, 3e6);
+    for (const StoredIncident& stored : all) {
       ++seen;
       unfinished += stored.incident.to ? 0 : 1;
       expect_whole(stored);
