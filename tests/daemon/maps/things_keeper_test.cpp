@@ -9,11 +9,9 @@ namespace deltamap::daemon {
 namespace {
 
 using mapping::store::MapStore;
-using mapping::things::Drawn;
 using mapping::things::DrawnSite;
+using mapping::things::kBox;
 using test::content_of;
-
-constexpr Drawn kBox{4.0, 4.0, 6.4, 5.6};
 
 class ThingsKeeperTest : public test::SavingFixture {
  protected:
@@ -67,8 +65,7 @@ TEST_F(ThingsKeeperTest, WhatTakesAThingBackSetsItsCellsToWhatTheyWere) {
   const auto list = keeper.list();
   ASSERT_EQ(list->things.size(), 2u);
   OccupancyGrid map = site.map;
-  for (const mapping::things::Thing& thing : list->things)
-    map = patched(std::move(map), keeper.undoing(thing.id, map));
+  for (const mapping::things::Thing& thing : list->things) map = patched(std::move(map), keeper.undoing(thing.id, map));
   EXPECT_EQ(map, before);
   EXPECT_THROW((void)keeper.undoing(3, site.map), std::runtime_error);
 }

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "mapping/things/thing_cells.hpp"
-
 namespace deltamap::mapping::things {
 namespace {
 
@@ -18,22 +16,6 @@ TEST(CellClusters, BridgeGapsUpToTheReach) {
   EXPECT_EQ(clusters[1], (std::vector<CellChange>{occupied(20, 20)}));
   EXPECT_EQ(cell_clusters(changes, 2).size(), 4u);
   EXPECT_TRUE(cell_clusters({}, 3).empty());
-}
-
-TEST(ThingCells, KeepWhatEachCellWasFirst) {
-  ThingCells cells;
-  cells.own({-3, 500}, CellState::kUnknown);
-  cells.own({40, 480}, CellState::kFree);
-  cells.own({40, 480}, CellState::kOccupied);
-  EXPECT_EQ(cells.count(), 2u);
-  EXPECT_EQ(cells.before({-3, 500}), CellState::kUnknown);
-  EXPECT_EQ(cells.before({40, 480}), CellState::kFree);
-  EXPECT_EQ(cells.before({0, 0}), std::nullopt);
-  EXPECT_TRUE(cells.has_within({38, 478}, 2));
-  EXPECT_FALSE(cells.has_within({37, 480}, 2));
-  cells.drop({40, 480});
-  cells.drop({40, 480});
-  EXPECT_EQ(cells.count(), 1u);
 }
 
 }  // namespace

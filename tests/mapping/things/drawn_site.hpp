@@ -2,6 +2,9 @@
 // A room of 12 m × 10 m at 5 cm that is drawn revision by revision, and the things that this tells of.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -83,5 +86,15 @@ class DrawnSite {
   std::uint32_t number = 0;
   std::vector<std::vector<CellChange>> revisions;
 };
+
+inline constexpr Drawn kBox{4.0, 4.0, 6.4, 5.6};  // 2.4 m × 1.6 m, in the middle of the floor
+inline constexpr double kCells_m = 0.11;          // two cells
+
+inline void expect_outline(const Outline& outline, const Drawn& box) {
+  EXPECT_NEAR(outline.length_m, std::max(box.high_x - box.low_x, box.high_y - box.low_y), kCells_m);
+  EXPECT_NEAR(outline.width_m, std::min(box.high_x - box.low_x, box.high_y - box.low_y), kCells_m);
+  EXPECT_NEAR(outline.centre.x(), 0.5 * (box.low_x + box.high_x), kCells_m);
+  EXPECT_NEAR(outline.centre.y(), 0.5 * (box.low_y + box.high_y), kCells_m);
+}
 
 }  // namespace deltamap::mapping::things

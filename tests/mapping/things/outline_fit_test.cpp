@@ -51,12 +51,5 @@ TEST(OutlineFit, OfASingleFaceOneSideIsSeen) {
   EXPECT_EQ(outline.seen, (std::array<bool, 4>{false, true, false, false}));
 }
 
-TEST(OutlineFit, OverlapIsOfTheSmallerOne) {
-  const Outline large{{0.0, 0.0}, 4.0, 2.0, 0.0, {}};
-  EXPECT_NEAR(overlap_share(large, {{0.0, 0.0}, 1.0, 1.0, 0.0, {}}), 1.0, 1e-9);
-  EXPECT_NEAR(overlap_share({{2.0, 0.0}, 1.0, 1.0, 0.0, {}}, large), 0.5, 0.05);
-  EXPECT_NEAR(overlap_share(large, {{9.0, 0.0}, 1.0, 1.0, 0.0, {}}), 0.0, 1e-9);
-}
-
 }  // namespace
 }  // namespace deltamap::mapping::things

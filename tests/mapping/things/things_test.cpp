@@ -8,16 +8,6 @@
 namespace deltamap::mapping::things {
 namespace {
 
-constexpr Drawn kBox{4.0, 4.0, 6.4, 5.6};  // 2.4 m × 1.6 m, in the middle of the floor
-constexpr double kCells_m = 0.11;          // two cells
-
-void expect_outline(const Outline& outline, const Drawn& box) {
-  EXPECT_NEAR(outline.length_m, std::max(box.high_x - box.low_x, box.high_y - box.low_y), kCells_m);
-  EXPECT_NEAR(outline.width_m, std::min(box.high_x - box.low_x, box.high_y - box.low_y), kCells_m);
-  EXPECT_NEAR(outline.centre.x(), 0.5 * (box.low_x + box.high_x), kCells_m);
-  EXPECT_NEAR(outline.centre.y(), 0.5 * (box.low_y + box.high_y), kCells_m);
-}
-
 int sides_seen(const Outline& outline) {
   return static_cast<int>(std::count(outline.seen.begin(), outline.seen.end(), true));
 }
@@ -42,14 +32,6 @@ TEST(Things, ABoxSeenSideBySideIsOneEventThatGrows) {
   EXPECT_EQ(all[0].first_seen, DrawnSite::at(10.0));
   EXPECT_EQ(all[0].last_seen, DrawnSite::at(900.0));
   EXPECT_DOUBLE_EQ(all[0].confidence, 1.0);
-}
-
-TEST(Things, FacesThatAreSeenApartFromEachOtherAreOneBody) {
-  DrawnSite site;
-  site.south({4.0, 4.0, 6.2, 5.6}).revision(10.0);
-  site.fill({6.4, 4.6, 6.4, 5.6}, CellState::kOccupied).revision(20.0);  // the corner between them was hidden
-  ASSERT_EQ(site.things.all().size(), 1u);
-  expect_outline(*site.things.all()[0].at, kBox);
 }
 
 TEST(Things, WhatAFaceClosesOffTellsItsDepth) {
@@ -108,39 +90,6 @@ TEST(Things, WhatComesWhereAnotherWentIsANewThing) {
   EXPECT_EQ(told[0].thing.kind, ThingKind::kAppeared);
 }
 
-TEST(Things, ABoxThatIsPushedAsideHasMoved) {
-  DrawnSite site;
-  site.box(kBox).begin_with_what_is_drawn();
-  const Drawn aside{4.6, 4.3, 7.0, 5.9};
-  site.clear(kBox).revision(10.0);
-  const auto told = site.box(aside).revision(20.0);
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].thing.kind, ThingKind::kMoved);
-  EXPECT_EQ(told[0].thing.id, 1u) << "it is the one that was told to have gone";
-  expect_outline(*told[0].thing.from, kBox);
-  expect_outline(*told[0].thing.at, aside);
-  EXPECT_EQ(site.things.all().size(), 1u);
-}
-
-TEST(Things, WhatComesLongAfterAnotherWentHasNotMoved) {
-  DrawnSite site;
-  site.box(kBox).begin_with_what_is_drawn();
-  site.clear(kBox).revision(10.0);
-  const auto told = site.box({4.6, 4.3, 7.0, 5.9}).revision(1000.0);
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].thing.kind, ThingKind::kAppeared);
-  EXPECT_EQ(told[0].thing.id, 2u);
-}
-
-TEST(Things, ABoxOfAnotherSizeHasNotMoved) {
-  DrawnSite site;
-  site.box(kBox).begin_with_what_is_drawn();
-  site.clear(kBox).revision(10.0);
-  const auto told = site.box({4.6, 4.3, 5.6, 5.0}).revision(20.0);
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].thing.kind, ThingKind::kAppeared);
-}
-
 TEST(Things, TwoBoxesBesideEachOtherStayTwo) {
   DrawnSite site;
   const Drawn left{2.0, 4.0, 4.0, 6.0};
@@ -160,14 +109,6 @@ TEST(Things, ABoxPutAgainstAnotherIsASecondThing) {
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0].thing.id, 2u);
   expect_outline(*told[0].thing.at, second);
-}
-
-TEST(Things, AFaceAcrossTheWholeLengthOfAHallGrowsIntoOne) {
-  DrawnSite site;
-  for (int piece = 0; piece < 8; ++piece)
-    site.fill({1.0 + piece, 5.0, 1.9 + piece, 5.0}, CellState::kOccupied).revision(10.0 + piece);
-  ASSERT_EQ(site.things.all().size(), 1u);
-  EXPECT_NEAR(site.things.all()[0].at->length_m, 7.9, kCells_m);
 }
 
 TEST(Things, AWallThatIsCorrectedByACellIsNoThing) {
@@ -275,15 +216,6 @@ TEST(Things, WhatIsFollowedCellByCellStaysWithinItsBounds) {
   EXPECT_LE(site.things.cell_bytes(), 20'000u);
   EXPECT_LE(site.things.all().size(), 20u);
   EXPECT_EQ(site.things.all().size() + site.things.forgotten(), 60u);
-}
-
-TEST(Things, WhatIsNoLongerFollowedStillGoesUnderItsId) {
-  DrawnSite site{{.most_cell_bytes = 1}};
-  site.box(kBox).revision(10.0);
-  const auto told = site.clear(kBox).revision(500.0);
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].thing.id, 1u);
-  EXPECT_EQ(told[0].thing.kind, ThingKind::kGone);
 }
 
 }  // namespace
