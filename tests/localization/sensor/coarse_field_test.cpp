@@ -35,42 +35,6 @@ TEST(CoarseField, IsAsGoodInEachBlockAsItsBestCell) {
   }
 }
 
-/// Of a quad, by its blocks one by one.
-int bound_of(const CoarseField& coarse, const TurnedBeams& beams, int column, int row) {
-  int sum = 0;
-  for (std::size_t beam = 0; beam < beams.count; ++beam) {
-    const int x = 2 * column + beams.columns[beam];
-    const int y = 2 * row + beams.rows[beam];
-    sum += std::min(std::min(*coarse.from(x, y), *coarse.from(x + 1, y)),
-                    std::min(*coarse.from(x, y + 1), *coarse.from(x + 1, y + 1)));
-  }
-  return sum;
-}
-
-void expect_bounds_of_blocks(const CoarseField& coarse, const TurnedBeams& beams) {
-  for (const CoarseField::Quad& quad : coarse.free_quads()) {
-    const auto bounds = coarse.quads().bounds(beams, quad.column, quad.row);
-    for (int i = 0; i < QuadBounds::kAtOnce && quad.column + i < coarse.quads().columns(); ++i) {
-      ASSERT_EQ(bounds[static_cast<std::size_t>(i)], bound_of(coarse, beams, quad.column + i, quad.row))
-          << quad.column + i << ' ' << quad.row;
-    }
-  }
-}
-
-TEST(CoarseField, BoundsWhatAnyOfFourBlocksMayAnswer) {
-  const OccupancyGrid before = test::drawn_flat();
-  CoarseField coarse{before, LikelihoodField{before, {}}, kBlock_m};
-  Random random{3};
-  const TurnedBeams seen = turned_beams(test::cast_ends(before, {4.5, 2.0, 1.1}, {}, random, 60), 0.7, kBlock_m);
-  const TurnedBeams far = turned_beams({{1000.0F, -5000.0F, 9e9F}, {0.0F, -3000.0F, 1.0F}}, 1.0, kBlock_m);
-  expect_bounds_of_blocks(coarse, seen);
-  expect_bounds_of_blocks(coarse, far);
-  OccupancyGrid after = before;
-  test::fill_box(after, {4.0, 1.0}, {5.1, 1.7}, CellState::kOccupied);
-  coarse.update(after, LikelihoodField{after, {}}, field_patch(after, changes_between(before, after), {}).box);
-  expect_bounds_of_blocks(coarse, seen);
-}
-
 TEST(CoarseField, FindsTheFreeBlocksOfARowBetweenTwoPlaces) {
   const OccupancyGrid map = test::drawn_flat();
   const CoarseField coarse{map, LikelihoodField{map, {}}, kBlock_m};
