@@ -114,23 +114,25 @@ void LatticeSearch::judge(const sensor::CoarseField& field, const sensor::Turned
 
 void LatticeSearch::judge_quads(const sensor::CoarseField& field, const sensor::TurnedBeams& beams,
                                 std::size_t nth_heading, std::size_t from, std::size_t until) {
-  constexpr int kAtOnce = sensor::CoarseField::kAtOnce / 2;  // quads, of which the blocks are looked at together
+  constexpr std::size_t kAtOnce = sensor::CoarseField::kAtOnce / 2;  // quads, whose blocks are looked at together
   static_assert(sensor::QuadBounds::kAtOnce == 2 * kAtOnce);
   const std::span<const sensor::CoarseField::Quad> quads = field.free_quads();
   while (from < until) {
     const sensor::CoarseField::Quad first = quads[from];
     const auto bounds = field.quads().bounds(beams, first.column, first.row);
-    std::array<std::uint32_t, 2> open{};
+    std::array<std::uint32_t, 2> open{};  // bits, of the quads that may hold one of the best
     for (; from < until && quads[from].row == first.row; ++from) {
-      const int nth = quads[from].column - first.column;
-      if (nth >= 2 * kAtOnce) break;
-      if (may_keep(bounds[static_cast<std::size_t>(nth)])) open[nth / kAtOnce] |= 1U << (nth % kAtOnce);
+      const auto nth = static_cast<std::size_t>(quads[from].column - first.column);
+      if (nth >= bounds.size()) break;
+      if (may_keep(bounds[nth])) open[nth / kAtOnce] |= 1U << (nth % kAtOnce);
     }
-    for (int half = 0; half < 2; ++half) {
-      if (open[half] == 0) continue;
-      const Cell block{2 * (first.column + half * kAtOnce), 2 * first.row};
-      judge_row(field, beams, nth_heading, block, open[half]);
-      judge_row(field, beams, nth_heading, {block.column, block.row + 1}, open[half]);
+    Cell block{2 * first.column, 2 * first.row};
+    for (const std::uint32_t of_half : open) {
+      if (of_half != 0) {
+        judge_row(field, beams, nth_heading, block, of_half);
+        judge_row(field, beams, nth_heading, {block.column, block.row + 1}, of_half);
+      }
+      block.column += sensor::CoarseField::kAtOnce;
     }
   }
 }

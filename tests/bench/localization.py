@@ -21,6 +21,7 @@ PARTS = {
     "verdict": on_experiments.verdict_rows,
     "intel": on_intel.known_start_rows,
     "global": on_intel.global_start_rows,
+    "warehouse": localizer_cost.warehouse_rows,
 }
 
 

@@ -116,3 +116,19 @@ def memory_rows(quick):
                         "%.1f MB (peak %.1f MB)" % (f["VmRSS"], f["VmHWM"]), "" if on else "≤ 14 MB",
                         None if on else f["VmHWM"] <= 14, "" if on else "nav2 core 16 MB"))
     return made
+
+
+def warehouse_rows(quick):
+    """A robot that does not know where it is, in warehouses of three sizes."""
+    made = []
+    for side_m, within_s, peer in ((100, 8, ""), (200, 8, "beluga 26 to 57 s"), (400, 12, "")):
+        starts = []
+        for seed in range(1, 3 if quick else 6):
+            text = run(X86_64.with_name("warehouse_start"), str(side_m), str(seed))
+            starts.append({name: float(value) for name, value in (line.split() for line in text.splitlines())})
+        slowest_s = max(start["found_s"] for start in starts)
+        longest_ms = max(start["longest_ms"] for start in starts)
+        met = min(start["found_s"] for start in starts) >= 0 and slowest_s <= within_s and longest_ms <= 25
+        made.append(row("global start in a warehouse of %d × %d m, %d seeds: the slowest; the longest scan" % (side_m, side_m, len(starts)),
+                        "%.1f s; %.0f ms" % (slowest_s, longest_ms), "≤ %d s; ≤ 25 ms" % within_s, met, peer))
+    return made

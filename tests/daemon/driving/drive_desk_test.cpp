@@ -31,7 +31,8 @@ class Desk {
       : world_{simulation::read_scenario(test::source_path("config/scenarios/room.yaml")),
                {.seed = 1, .start = kDeskOpens, .change_every_s = {}}},
         kept_{{folder_.path() / "drive.json", "/dev/robot"}},
-        link_{drivers::port::PortId::kRobot, PioneerSession{driving_robot(), drivers::SessionMode::kLive},
+        link_{drivers::port::PortId::kRobot,
+              PioneerSession{driving_robot(), drivers::SessionMode::kLive},
               {[this](std::span<const std::uint8_t> bytes, unsigned baud) {
                  if (!is_cut) world_.send_to_robot(bytes, baud);
                },
