@@ -32,7 +32,8 @@ class CoarseField {
   /// Blocks in whose middle a robot may stand: one of the cells there is free. Rising.
   [[nodiscard]] std::span<const std::uint32_t> free_blocks() const { return free_blocks_; }
   [[nodiscard]] bool is_free(int column, int row) const {
-    return column < columns_ && row < rows_ && free_[static_cast<std::size_t>(row * columns_ + column)];
+    if (column >= columns_ || row >= rows_) return false;
+    return free_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)];
   }
   [[nodiscard]] Point2 centre_of(std::uint32_t block) const;
   [[nodiscard]] double middle_of_row(int row) const { return origin_.y() + (row + 0.5) * block_m_; }

@@ -177,13 +177,14 @@ TEST(SerialPort, RestsNoLongerWhereTheBaudChangesOrInputIsDiscarded) {
                  to->await(800);
                },
                {}});
-  for (const auto& end_rest :
-       {std::function{[&] { port->set_baud(38400); }}, std::function{[&] { port->discard_input(); }}}) {
+  const std::vector<std::function<void(BytePort&)>> ends_of_rest{[](BytePort& of) { of.set_baud(38400); },
+                                                                 [](BytePort& of) { of.discard_input(); }};
+  for (const auto& end_rest : ends_of_rest) {
     device.send(Bytes(4, 0x02));
     const std::size_t before = count;
     run_until(loop, [&] { return count > before; });
     const auto began = std::chrono::steady_clock::now();
-    end_rest();
+    end_rest(*port);
     device.send({0x06});
     run_until(loop, [&] { return count == before + 5; });
     EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(80));

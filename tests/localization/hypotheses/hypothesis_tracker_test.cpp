@@ -214,7 +214,7 @@ double share_when_heard_of(Round& round, HypothesisReport& report) {
 
 TEST(PoseHypotheses, TellThatTheRobotMayHaveBeenCarriedLongBeforeTheyWin) {
   const OccupancyGrid map = test::drawn_flat();
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Round round{map, map, {1.6, 1.0, 0.0}, seed};
     HypothesisReport report;
     EXPECT_LT(share_when_heard_of(round, report), 0.5) << seed;
