@@ -55,9 +55,14 @@ void IncidentKeeper::begin_ring(Timestamp now) {
   remove_drafts(folder);
   const bool is_start = now == options_.began;
   ring_.emplace(ring_folder(options_.settings), kRingS);
-  ring_->begin_segment(now, so_far_, is_start ? nullptr : without_pose());
-  if (is_start) {
-    for (const std::string& note : options_.first_notes) ring_->write(note_at(now, note));
+  try {
+    ring_->begin_segment(now, so_far_, is_start ? nullptr : without_pose());
+    if (is_start) {
+      for (const std::string& note : options_.first_notes) ring_->write(note_at(now, note));
+    }
+  } catch (...) {  // a ring without a whole first segment holds nothing that replays: begun anew by the next record
+    ring_.reset();
+    throw;
   }
   options_.first_notes.clear();
 }

@@ -37,10 +37,12 @@ void SegmentRing::begin_segment(Timestamp now, const RunSoFar& so_far, std::shar
 }
 
 void SegmentRing::write(const drivers::port::ByteRecord& record) {
-  if (writer_) writer_->write(record);
+  if (!writer_) throw std::runtime_error(folder_.string() + ": no segment has been begun");
+  writer_->write(record);
 }
 
 const SegmentRing::Segment& SegmentRing::segment_at(Timestamp time) const {
+  if (segments_.empty()) throw std::runtime_error(folder_.string() + ": holds nothing yet");
   const Segment* found = &segments_.front();
   for (const Segment& segment : segments_) {
     if (segment.began <= time) found = &segment;

@@ -14,7 +14,7 @@ namespace deltamap::daemon {
 
 class LogTail {
  public:
-  static constexpr std::size_t kMostBytes = 128 * 1024;
+  static constexpr std::size_t kMostBytes = std::size_t{128} * 1024;
 
   void add(Timestamp time, const std::string& text, bool is_warning) {
     const std::scoped_lock lock{mutex_};

@@ -46,9 +46,10 @@ class QuadBounds {
   [[nodiscard]] int padded_rows() const { return rows_ + 3; }
   /// Of the four blocks from this one on, by the column's parity first: quads side by side are bytes side by side.
   [[nodiscard]] std::size_t place_of(int column, int row) const {
-    const auto padded_row = static_cast<std::size_t>((column & 1) * padded_rows() + row + 2);
-    const auto padded_column = static_cast<std::size_t>((column >> 1) + kBefore);
-    return padded_row * static_cast<std::size_t>(padded_columns()) + padded_column;
+    const int padded_row = (column & 1) * padded_rows() + row + 2;
+    const int padded_column = (column >> 1) + kBefore;
+    const int place = padded_row * padded_columns() + padded_column;
+    return static_cast<std::size_t>(place);
   }
 
   int columns_ = 0;  // blocks
