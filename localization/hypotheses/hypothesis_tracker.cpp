@@ -12,6 +12,11 @@ namespace {
 constexpr double kOverlooked = -2.0;     // log odds of a hypothesis that earlier looks did not find
 constexpr double kFarthestBehind = 6.0;  // log evidence: the stack may hold scans from before a slip
 
+// At one place, within so much, so many scans are looked at: a few rounds of all hypotheses.
+constexpr double kPlaceM = 0.01;
+constexpr double kPlaceRad = radians(0.5);
+constexpr int kLooksAtAPlace = 25;
+
 }  // namespace
 
 HypothesisTracker::HypothesisTracker(const HypothesisTrackerParams& params, const GlobalSearchParams& search,
@@ -38,6 +43,7 @@ void HypothesisTracker::forget_hypotheses() {
   stack_.clear();
   decorrelation_.clear();
   outlier_rate_.forget();
+  looks_at_place_ = 0;
 }
 
 /// What spoke for other hypotheses spoke against a pose that has been mended since.
@@ -52,6 +58,7 @@ bool HypothesisTracker::has_jumped(const Pose2& map_from_believed) const {
 
 void HypothesisTracker::start_believing_in(const Pose2& found) {
   believing_ = true;
+  looks_at_place_ = 0;
   forget_kidnapping();
   bank_.set_believed_prior(0.0);
   if (!is_near_believed(found)) {
@@ -66,6 +73,7 @@ void HypothesisTracker::start_believing_in(const Pose2& found) {
 
 void HypothesisTracker::stop_believing() {
   believing_ = false;
+  looks_at_place_ = 0;
   bank_.stop_believing();
   bank_.set_priors([&](const Pose2& pose) { return log_prior_unbelieved(pose); });
   search_.start();
@@ -107,6 +115,7 @@ void HypothesisTracker::apply(const OccupancyGrid& map, const sensor::Likelihood
   } else {
     coarse_.update(map, field, changed);
   }
+  looks_at_place_ = 0;
 }
 
 void HypothesisTracker::thin(const motion::BeamEnds& ends) {
@@ -154,16 +163,31 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   if (seen.kidnapped && !kidnapped_) search_.start();  // not with a scan from before
   kidnapped_ = seen.kidnapped;
   bank_.make_room(suspicious_ || kidnapped_);
-  thin(seen.ends);
-  if (ends_.size() == 0) return report_;
-
-  const auto how_many = believing_ ? static_cast<std::size_t>(params_.refined_a_scan) : HypothesisBank::kMost;
-  bank_.refine(field, ends_, how_many, seen.unknown_s);
   since_step_m_ += motion.position().norm();
   since_step_rad_ += std::abs(motion.theta);
+  if (seen.ends.size() > 0 && tells_more(motion)) look(field, seen);
+  return report_;
+}
+
+bool HypothesisTracker::tells_more(const Pose2& motion) {
+  since_place_m_ += motion.position().norm();
+  since_place_rad_ += std::abs(motion.theta);
+  const bool is_another_place = since_place_m_ >= kPlaceM || since_place_rad_ >= kPlaceRad;
+  if (is_another_place || (searches() && search_.under_way())) {
+    since_place_m_ = 0.0;
+    since_place_rad_ = 0.0;
+    looks_at_place_ = 0;
+  }
+  return ++looks_at_place_ <= kLooksAtAPlace;
+}
+
+void HypothesisTracker::look(const sensor::LikelihoodField& field, const Seen& seen) {
+  thin(seen.ends);
+  const auto how_many = believing_ ? static_cast<std::size_t>(params_.refined_a_scan) : HypothesisBank::kMost;
+  bank_.refine(field, ends_, how_many, seen.unknown_s);
   weigh(field, seen);
   if (believing_) probe(field, seen.continuous_odom_from_robot);
-  if (!believing_ || suspicious_ || kidnapped_) {
+  if (searches()) {
     const std::span<const Pose2> found =
         search_.look(coarse_, field, {ends_, near_ends_}, seen.continuous_odom_from_robot, believing_ && !kidnapped_);
     if (!found.empty()) admit_all(field, found, seen.continuous_odom_from_robot);
@@ -171,7 +195,6 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   bank_.settle();
   stack_.add(ends_, seen.continuous_odom_from_robot);
   write_report();
-  return report_;
 }
 
 HypothesisTracker::Odds HypothesisTracker::odds_beside_believed(const ScanStack::Sums& its,

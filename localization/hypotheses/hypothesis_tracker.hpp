@@ -88,6 +88,11 @@ class HypothesisTracker {
   /// Otherwise than odometry says, by more than joins two hypotheses.
   [[nodiscard]] bool has_jumped(const Pose2& map_from_believed) const;
   void thin(const motion::BeamEnds& ends);
+  /// Is the whole map searched, alone or beside the believed pose?
+  [[nodiscard]] bool searches() const { return !believing_ || suspicious_ || kidnapped_; }
+  /// The first scans at a place tell all that there is to see from it.
+  [[nodiscard]] bool tells_more(const Pose2& motion);
+  void look(const sensor::LikelihoodField& field, const Seen& seen);
   void weigh(const sensor::LikelihoodField& field, const Seen& seen);
   void keep_near_ends();
   void probe(const sensor::LikelihoodField& field, const Pose2& odom);
@@ -131,6 +136,9 @@ class HypothesisTracker {
   bool probe_nearby_next_ = false;
   double since_step_m_ = 0.0;
   double since_step_rad_ = 0.0;
+  double since_place_m_ = 0.0;
+  double since_place_rad_ = 0.0;
+  int looks_at_place_ = 0;
   HypothesisReport report_;
   double support_nats_ = 0.0;
 };

@@ -182,7 +182,9 @@ bool LaserOdometer::stands_still(const Scan& scan, std::span<const RayInRobot> r
   if (!is_claimed) {
     standing_odds_ = 0.0;  // nothing to tell
   } else if (standstill_.is_same(scan)) {
-    standing_odds_ = standstill_.log_odds(scan, rays, anchor_.claimed);
+    // Where nothing has spoken for standing yet, odds that would not go on telling are as good as none.
+    const bool told = stands_ || anchor_.odds > 0.0;
+    standing_odds_ = standstill_.log_odds(scan, rays, anchor_.claimed, told ? Standstill::kClearlyMoved : kTellsMore);
   } else {
     standing_odds_ = Standstill::kClearlyMoved;
   }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/geometry/points_in_map.hpp"
+
 namespace deltamap::localization::odometer {
 namespace {
 
@@ -30,15 +32,17 @@ constexpr double kAcrossM = 0.02;     // deviation of an end across its surface
 class SeenSurfaces {
  public:
   SeenSurfaces(const Scan& scan, std::span<const RayInRobot> rays, double claimed_m)
-      : scan_{scan}, rays_{rays}, across_m2_{kAcrossM * kAcrossM + kOffShare * kOffShare * claimed_m * claimed_m} {}
+      : scan_{scan},
+        rays_{rays},
+        laser_{rays.front().origin.cast<double>()},
+        first_bearing_rad_{scan.robot_from_laser.theta + scan.first_bearing_rad},
+        across_m2_{kAcrossM * kAcrossM + kOffShare * kOffShare * claimed_m * claimed_m} {}
 
   /// Log-likelihood of an end of an earlier scan, given where it would lie now, robot frame; 0 where the scan says
   /// nothing about it.
   [[nodiscard]] double likelihood(const Point2& end) const {
-    const Point2 arm = end - rays_.front().origin.cast<double>();
-    const double bearing =
-        turn_between(scan_.robot_from_laser.theta + scan_.first_bearing_rad, std::atan2(arm.y(), arm.x()));
-    const double place = bearing / scan_.bearing_step_rad;
+    const Point2 arm = end - laser_;
+    const double place = turn_between(first_bearing_rad_, std::atan2(arm.y(), arm.x())) / scan_.bearing_step_rad;
     if (!(place >= 0.0 && place < static_cast<double>(rays_.size() - 1))) return 0.0;
     const auto beam = static_cast<std::size_t>(place);
     const bool is_seen = scan_.beams[beam].kind == BeamKind::kRange && scan_.beams[beam + 1].kind == BeamKind::kRange;
@@ -71,7 +75,9 @@ class SeenSurfaces {
 
   const Scan& scan_;
   std::span<const RayInRobot> rays_;
-  double across_m2_;  // variance of an end across its surface, beside what a turn makes of it
+  Point2 laser_;              // robot frame
+  double first_bearing_rad_;  // robot frame
+  double across_m2_;          // variance of an end across its surface, beside what a turn makes of it
 };
 
 }  // namespace
@@ -109,14 +115,14 @@ bool Standstill::is_same(const Scan& scan) const {
          chi2 < kMostSameChi2 * static_cast<double>(same);
 }
 
-double Standstill::log_odds(const Scan& scan, std::span<const RayInRobot> rays, const Pose2& claimed) const {
+double Standstill::log_odds(const Scan& scan, std::span<const RayInRobot> rays, const Pose2& claimed,
+                            double enough) const {
   const SeenSurfaces seen{scan, rays, claimed.position().norm()};
   const auto likelihood = [&](const Pose2& kept_from_robot) {
-    const Pose2 robot_from_kept = inverse(kept_from_robot);
+    const PointsInMap robot_from_kept{inverse(kept_from_robot)};
     double sum = 0.0;
     for (const Kept& kept : kept_) {
-      if (kept.beam.kind == BeamKind::kRange)
-        sum += seen.likelihood(robot_from_kept * Point2{kept.ray.end.cast<double>()});
+      if (kept.beam.kind == BeamKind::kRange) sum += seen.likelihood(robot_from_kept(kept.ray.end));
     }
     return sum / kAlikeBeams;
   };
@@ -124,7 +130,7 @@ double Standstill::log_odds(const Scan& scan, std::span<const RayInRobot> rays, 
   double moved = likelihood(claimed);
   for (const double share : kShares) {
     for (const double turn_rad : kTurnsRad) {
-      if (stands - moved < kClearlyMoved) return stands - moved;
+      if (stands - moved <= enough) return stands - moved;
       moved =
           std::max(moved, likelihood({share * claimed.x, share * claimed.y, wrapped_angle(claimed.theta + turn_rad)}));
     }

@@ -22,8 +22,10 @@ class Standstill {
   /// scan: a laser that repeats itself tells nothing of the robot.
   [[nodiscard]] bool is_same(const Scan& scan) const;
   /// Of a robot that has stood since the kept scan, over one that has moved as its wheels claim or nearly so, nats: how
-  /// much better the kept scan's ends then lie on what the scan sees. Below kClearlyMoved the least is not looked for.
-  [[nodiscard]] double log_odds(const Scan& scan, std::span<const RayInRobot> rays, const Pose2& claimed) const;
+  /// much better the kept scan's ends then lie on what the scan sees. Of all motions that the wheels may mean the best
+  /// counts; none is tried any more once the odds are no more than `enough`.
+  [[nodiscard]] double log_odds(const Scan& scan, std::span<const RayInRobot> rays, const Pose2& claimed,
+                                double enough) const;
   static constexpr double kClearlyMoved = -3.0;
 
  private:

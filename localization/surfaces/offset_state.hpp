@@ -81,7 +81,11 @@ class OffsetState {
     const Eigen::Matrix<double, kCount, 1> here = mean_.segment<kCount>(first);
     mean_ += left * ((Square::Identity() - gain * inner) * pull - gain * here);
     const Eigen::Matrix<double, Eigen::Dynamic, kCount> weighed = left * gain;
-    covariance_.triangularView<Eigen::Lower>() -= weighed * left.transpose();
+    for (Eigen::Index column = 0; column < covariance_.cols(); ++column) {  // too thin for a general product to pay
+      const Eigen::Index below = covariance_.rows() - column;
+      for (int k = 0; k < kCount; ++k)
+        covariance_.col(column).tail(below) -= left(column, k) * weighed.col(k).tail(below);
+    }
     mirror_lower_half();
   }
 

@@ -31,8 +31,7 @@ class Round {
   void carry_to(const Pose2& truth) { truth_ = truth; }
   void tell_that_it_was_carried() { is_told_ = true; }
 
-  const HypothesisReport& step(std::optional<Pose2> believed, double held = 0.0) {
-    const Pose2 motion = kMotion;
+  const HypothesisReport& step(std::optional<Pose2> believed, double held = 0.0, const Pose2& motion = kMotion) {
     truth_ = truth_ * motion;
     joined_ = joined_ * motion;
     return tracker_.observe(field_, {.ends = test::cast_ends(world_, truth_, {}, random_),
@@ -323,6 +322,21 @@ TEST(PoseHypotheses, SettleOnTheOneHypothesisThatFitsWhereNothingIsBelieved) {
     EXPECT_GT(best->share, 0.98) << seed;
     EXPECT_TRUE(near(best->map_from_robot, round.truth())) << seed;
   }
+}
+
+TEST(PoseHypotheses, RestWhileTheRobotStandsAndAreRefinedAgainOnceItDrivesOn) {
+  const OccupancyGrid map = test::drawn_flat();
+  Round round{map, map, {1.6, 1.0, 0.0}, 1};
+  round.others().start_anywhere();
+  const auto best_after = [&round](const Pose2& motion) {
+    (void)round.step(std::nullopt, 0.0, motion);
+    return round.others().best_hypothesis()->map_from_robot;
+  };
+  for (int i = 0; i < 200; ++i) (void)round.step(std::nullopt, 0.0, {});
+  const Pose2 stands = round.others().best_hypothesis()->map_from_robot;
+  EXPECT_EQ(best_after({}), stands) << "noise tells nothing new";
+  const Pose2 driven{0.02, 0.0, 0.0};
+  EXPECT_NE(best_after(driven), stands * driven);
 }
 
 TEST(PoseHypotheses, LearnNothingWhileTheRobotStands) {

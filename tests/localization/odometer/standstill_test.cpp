@@ -16,7 +16,7 @@ class StandstillTest : public ::testing::Test {
     return test::cast_scan(world, pose, timestamp_from_ns(0), {}, random_);
   }
   static double log_odds(const Standstill& kept, const Scan& scan, const Pose2& claimed) {
-    return kept.log_odds(scan, motion::deskewed(scan, {}), claimed);
+    return kept.log_odds(scan, motion::deskewed(scan, {}), claimed, Standstill::kClearlyMoved);
   }
   Random random_{5};
 };
@@ -47,6 +47,19 @@ TEST_F(StandstillTest, SaysThatItMovedWhereItDid) {
   Standstill kept;
   kept.keep(first, motion::deskewed(first, {}));
   EXPECT_LE(log_odds(kept, seen_from(world, {2.1, 3.0, 0.0}), {0.1, 0.0, 0.0}), Standstill::kClearlyMoved);
+}
+
+TEST_F(StandstillTest, TriesNoFurtherMotionOnceTheOddsAreLowEnough) {
+  const OccupancyGrid world = test::room_with_pillar();
+  const Scan first = seen_from(world, {2.0, 3.0, 0.0});
+  Standstill kept;
+  kept.keep(first, motion::deskewed(first, {}));
+  const Scan again = seen_from(world, {2.0, 3.0, 0.0});
+  const auto rays = motion::deskewed(again, {});
+  const Pose2 claimed{0.03, 0.0, 0.0};
+  const double best = kept.log_odds(again, rays, claimed, Standstill::kClearlyMoved);
+  EXPECT_GT(kept.log_odds(again, rays, claimed, 1e9), best) << "as the wheels claim, which is not the best motion";
+  EXPECT_EQ(kept.log_odds(again, rays, claimed, best - 0.1), best);
 }
 
 TEST_F(StandstillTest, SaysNothingInTheMiddleOfABareCorridor) {
