@@ -8,6 +8,7 @@ namespace deltamap::surveying::slam {
 namespace {
 
 constexpr double kDeviationCells = 1.5;
+constexpr std::uint8_t kFull = 255;    // where an end lies itself
 constexpr int kStampCells = 4;         // beyond, an end is as good as none
 constexpr double kLeastArmM = 3.0;     // ends nearer than that do not ask for coarser steps of heading
 constexpr std::size_t kAtOnce = 32;    // ends, before it is asked whether the others can make up for them
@@ -83,7 +84,7 @@ class BranchAndBound {
       for (const std::size_t last = std::min(cells.size(), i + kAtOnce); i < last; ++i) {
         sum += field_.most_from(level, cells[i].column + column, cells[i].row + row);
       }
-      if (sum + 255 * (cells.size() - i) <= least) return 0;
+      if (sum + kFull * (cells.size() - i) <= least) return 0;
     }
     return sum;
   }
@@ -130,7 +131,7 @@ std::vector<std::uint8_t> stamp_of_an_end() {
   std::vector<std::uint8_t> stamp;
   for (int y = -kStampCells; y <= kStampCells; ++y) {
     for (int x = -kStampCells; x <= kStampCells; ++x) {
-      const double value = 255.0 * std::exp(-0.5 * (x * x + y * y) / (kDeviationCells * kDeviationCells));
+      const double value = kFull * std::exp(-0.5 * (x * x + y * y) / (kDeviationCells * kDeviationCells));
       stamp.push_back(static_cast<std::uint8_t>(std::lround(value)));
     }
   }
@@ -158,6 +159,9 @@ CorrelationField::CorrelationField(std::span<const Point2> ends, double resoluti
   const std::vector<std::uint8_t> stamp = stamp_of_an_end();
   for (const Point2& end : ends) {
     const Cell cell = cell_at(end);
+    if (finest.values[static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(finest.width) +
+                      static_cast<std::size_t>(cell.column)] == kFull)
+      continue;  // an end lies there already
     const std::uint8_t* from = stamp.data();
     for (int y = cell.row - kStampCells; y <= cell.row + kStampCells; ++y) {
       for (int x = cell.column - kStampCells; x <= cell.column + kStampCells; ++x, ++from) {
@@ -180,18 +184,22 @@ Cell CorrelationField::cell_at(const Point2& place) const {
 CorrelationField::Level CorrelationField::coarser(const Level& of, int reach) {
   Level level{of.width + reach, of.height + reach, of.border + reach, {}};
   level.values.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
-  const auto at = [&](int x, int y) -> std::uint8_t {
-    if (x < 0 || y < 0 || x >= of.width || y >= of.height) return 0;
-    return of.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(of.width) + static_cast<std::size_t>(x)];
+  // The same place of the finer level lies `reach` further in; around it there is nothing.
+  const auto width = static_cast<std::size_t>(of.width);
+  const auto margin = static_cast<std::size_t>(reach);
+  std::vector<std::uint8_t> both_rows(width + 2 * margin, 0);
+  const auto row_of = [&](int y) {
+    return y < 0 || y >= of.height ? nullptr : of.values.data() + static_cast<std::size_t>(y) * width;
   };
   for (int y = 0; y < level.height; ++y) {
-    for (int x = 0; x < level.width; ++x) {
-      // The same place of the finer level lies `reach` further in.
-      const int fx = x - reach;
-      const int fy = y - reach;
-      level.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x)] =
-          std::max({at(fx, fy), at(fx + reach, fy), at(fx, fy + reach), at(fx + reach, fy + reach)});
+    const std::uint8_t* const here = row_of(y - reach);
+    const std::uint8_t* const above = row_of(y);
+    for (std::size_t x = 0; x < width; ++x) {
+      both_rows[margin + x] = std::max<std::uint8_t>(here == nullptr ? 0 : here[x], above == nullptr ? 0 : above[x]);
     }
+    std::uint8_t* const made =
+        level.values.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width);
+    for (std::size_t x = 0; x < width + margin; ++x) made[x] = std::max(both_rows[x], both_rows[x + margin]);
   }
   return level;
 }
@@ -199,7 +207,7 @@ CorrelationField::Level CorrelationField::coarser(const Level& of, int reach) {
 std::optional<CorrelativeMatch> best_match(const CorrelationField& field, std::span<const Point2> ends,
                                            const SearchWindow& window, double least_score, double near_share) {
   if (ends.empty()) return std::nullopt;
-  const double full = 255.0 * static_cast<double>(ends.size());
+  const double full = kFull * static_cast<double>(ends.size());
   const BranchAndBound search{field, ends, window};
   const std::optional<Branch> best = search.best(static_cast<std::uint32_t>(least_score * full), nullptr);
   if (!best) return std::nullopt;

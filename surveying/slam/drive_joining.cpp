@@ -38,7 +38,7 @@ DriveJoining::Joined::Joined(const Survey& survey)
 void DriveJoining::search_from(std::uint32_t node) {
   const double driven_m = survey_.keyframes[node].driven_m;
   if (!joined_) {
-    joined_ = std::make_unique<const Joined>(survey_);
+    joined_ = std::make_unique<Joined>(survey_);
     next_m_ = kFirstLookM;
   }
   if (driven_m < next_m_) return;
@@ -70,7 +70,7 @@ bool DriveJoining::agree(const Found& a, const Found& b) const {
 
 std::optional<mapping::alignment::PoseLink> DriveJoining::link() {
   const std::vector<Found> found = std::exchange(found_, {});
-  const std::unique_ptr<const Joined> joined = std::move(joined_);
+  const std::unique_ptr<Joined> joined = std::move(joined_);
   if (found.empty()) return std::nullopt;
   // One vote for each place from which it was looked for, however long the way was that was held against the others.
   const auto places = [&](auto&& counts) {

@@ -42,7 +42,7 @@ class DriveJoining {
   [[nodiscard]] bool agree(const Found& a, const Found& b) const;
 
   const Survey& survey_;
-  std::unique_ptr<const Joined> joined_;
+  std::unique_ptr<Joined> joined_;
   std::vector<Found> found_;
   double next_m_ = 0.0;  // driven
 };

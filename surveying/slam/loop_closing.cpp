@@ -88,7 +88,7 @@ void LoopClosing::search(std::uint32_t node) {
     SearchWindow window = window_of(expected, unsure);
     window.position_m += kLeastWindowM;
     window.heading_rad = std::min(kMostWindowRad, window.heading_rad + kLeastWindowRad);
-    const SubmapMatcher matcher{
+    SubmapMatcher matcher{
         submap(survey_, back_by(survey_, other, kReferenceM), on_by(survey_, other, kReferenceM), other, 0.0),
         window.position_m};
     const auto match =
@@ -185,9 +185,9 @@ void LoopClosing::match_neighbours() {
       nearest_m = away_m;
     }
     if (!nearest) continue;
-    const SubmapMatcher matcher{submap(survey_, back_by(survey_, *nearest, kNeighbourSubmapM),
-                                       on_by(survey_, *nearest, kNeighbourSubmapM), *nearest, 0.0),
-                                kLeastWindowM};
+    SubmapMatcher matcher{submap(survey_, back_by(survey_, *nearest, kNeighbourSubmapM),
+                                 on_by(survey_, *nearest, kNeighbourSubmapM), *nearest, 0.0),
+                          kLeastWindowM};
     const auto match = matcher.match(
         survey_.keyframes[node].ends, survey_.keyframes[node].tracked->scan.range_deviation_m,
         {motion_between(survey_.poses[*nearest], survey_.poses[node]), kLeastWindowM, kLeastWindowRad}, {}, kNeighbour);

@@ -75,8 +75,8 @@ std::optional<mapping::alignment::PoseLink> Slam::matched_link(const mapping::al
   const Keyframe& here = survey_.keyframes[moved.to];
   const Pose2& motion = moved.from_from_to;
   const std::uint32_t first = back_by(survey_, moved.from, kFollowedM);
-  const SubmapMatcher matcher{submap(survey_, first, moved.from, moved.from, 0.0),
-                              window_of(motion, moved.covariance).position_m};
+  SubmapMatcher matcher{submap(survey_, first, moved.from, moved.from, 0.0),
+                        window_of(motion, moved.covariance).position_m};
   PoseCovariance unsure = moved.covariance;
   for (int looks = 0; looks < kMostLooks; ++looks, unsure *= kWidened * kWidened) {
     const bool is_guessed = looks > 0 || motion.position().norm() > kGapM;

@@ -75,12 +75,12 @@ SearchWindow window_of(const Pose2& expected, const PoseCovariance& unsure) {
 SubmapMatcher::SubmapMatcher(Submap submap, double reach_m)
     : everywhere_{window_around(submap.ends)},
       field_{submap.ends, kCorrelationCellM, levels_for(reach_m)},
-      surface_{std::move(submap.surface), kTableCellM, kReachM} {}
+      points_{std::move(submap.surface)} {}
 
 std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, double range_deviation_m,
                                                 const SearchWindow& window,
                                                 const mapping::registration::PoseBelief& known,
-                                                const SubmapMatchParams& params) const {
+                                                const SubmapMatchParams& params) {
   const std::vector<Point2> some = evenly(ends);
   auto found = best_match(field_, some, window, params.least_score, params.ambiguous_share);
   if (!found || found->elsewhere > 0.0) return std::nullopt;
@@ -90,9 +90,10 @@ std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, do
     found->field_from_scan = window.centre;
     found->is_at_rim = false;
   }
+  if (!surface_) surface_.emplace(std::move(points_), kTableCellM, kReachM);
   // Ends share errors: what was known before weighs as much more.
   const mapping::registration::Registration refined = mapping::registration::registration(
-      ends, surface_, found->field_from_scan, {known.pose, known.information / kIndependentShare},
+      ends, *surface_, found->field_from_scan, {known.pose, known.information / kIndependentShare},
       {.first_reach_m = kReachM, .last_reach_m = kLastReachM, .point_deviation_m = range_deviation_m});
   const Pose2 correction = motion_between(found->field_from_scan, refined.reference_from_moving);
   const bool fits = refined.settled &&

@@ -28,7 +28,7 @@ TEST(SubmapMatcher, PlacesAScanToACentimetre) {
   Random random{2};
   const OccupancyGrid hall = test::drawn_hall(0.02);
   const Survey survey = known_way(hall, test::way_along({{2.0, 7.0}, {8.0, 7.0}}), random);
-  const SubmapMatcher matcher{submap(survey, 0, 29, 0, 0.0), 1.0};
+  SubmapMatcher matcher{submap(survey, 0, 29, 0, 0.0), 1.0};
   const Pose2 truth{6.0, 6.6, 0.2};
   const Pose2 submap_from_scan = motion_between(survey.poses[0], truth);
   const SearchWindow window{
@@ -47,7 +47,7 @@ TEST(SubmapMatcher, LeavesTheLengthOfACorridorToTheWheels) {
   test::fill(corridor, {0.0, -0.1}, {60.0, 0.0}, CellState::kOccupied);
   test::fill(corridor, {0.0, 3.0}, {60.0, 3.1}, CellState::kOccupied);
   const Survey survey = known_way(corridor, test::way_along({{20.0, 1.5}, {26.0, 1.5}}), random);
-  const SubmapMatcher matcher{submap(survey, 0, 29, 29, 0.0), 0.5};
+  SubmapMatcher matcher{submap(survey, 0, 29, 29, 0.0), 0.5};
   const Pose2 truth{26.3, 1.45, 0.05};
   const Pose2 wheels = motion_between(survey.poses[29], {26.35, 1.55, 0.09});
   const PoseCovariance by_wheels = Eigen::Vector3d{0.0025, 0.0025, 0.0025}.asDiagonal();
@@ -69,7 +69,7 @@ TEST(SubmapMatcher, RefusesWhatFitsInTwoPlacesAndWhatFitsNowhere) {
   test::fill(niches, {0.0, -0.1}, {30.0, 0.0}, CellState::kOccupied);
   for (double x = 2.0; x < 30.0; x += 4.0) test::fill(niches, {x, 2.2}, {x + 0.8, 3.0}, CellState::kOccupied);
   const Survey survey = known_way(niches, test::way_along({{4.0, 1.0}, {24.0, 1.0}}), random);
-  const SubmapMatcher matcher{submap(survey, 0, 99, 50, 0.0), 8.0};
+  SubmapMatcher matcher{submap(survey, 0, 99, 50, 0.0), 8.0};
   const std::vector<Point2> ends =
       mapping::registration::ray_ends(test::seen_scan(niches, {13.0, 1.2, 0.1}, 0.01, random, 6.0), 80.0);
   const Pose2 sought = motion_between(survey.poses[50], {13.0, 1.2, 0.1});
