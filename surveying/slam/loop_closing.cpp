@@ -76,12 +76,28 @@ std::vector<std::uint32_t> LoopClosing::candidates(std::uint32_t node,
   return chosen;
 }
 
+/// One that is believed already, to the same place of that way.
+std::optional<mapping::alignment::PoseLink> LoopClosing::loop_between(std::uint32_t other, std::uint32_t node) const {
+  const Keyframe& there = survey_.keyframes[other];
+  for (const std::uint32_t place : survey_.links_of[node]) {
+    const mapping::alignment::PoseLink& link = survey_.links[place];
+    if (!link.may_drop || link.to != node) continue;
+    const Keyframe& of = survey_.keyframes[link.from];
+    if (of.drive == there.drive && std::abs(of.driven_m - there.driven_m) < kEachM) return link;
+  }
+  return std::nullopt;
+}
+
 void LoopClosing::search(std::uint32_t node) {
   const auto known = relative_covariances(survey_, node);
   const std::vector<std::uint32_t> tried = candidates(node, known);
   if (tried.empty()) return;
   const Submap seen = submap(survey_, back_by(survey_, node, kLoopSearchedM), node, node, kLoopEndEachM);
   for (const std::uint32_t other : tried) {
+    if (const auto told = loop_between(other, node)) {
+      consider(*told);  // it may confirm others
+      continue;
+    }
     const Pose2 node_from_other = motion_between(survey_.poses[node], survey_.poses[other]);
     const Pose2 expected = inverse(node_from_other);
     const PoseCovariance unsure = inverted_covariance(node_from_other, *known[other]);

@@ -29,6 +29,7 @@ class LoopClosing {
   [[nodiscard]] std::size_t contradicted() const { return contradicted_; }
 
  private:
+  [[nodiscard]] std::optional<mapping::alignment::PoseLink> loop_between(std::uint32_t other, std::uint32_t node) const;
   void search(std::uint32_t node);
   void search_all(std::optional<std::uint32_t> drive);
   [[nodiscard]] std::vector<std::uint32_t> candidates(std::uint32_t node,

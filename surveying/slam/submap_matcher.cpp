@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 #include <utility>
 
 #include "core/geometry/pose_spread.hpp"
@@ -55,6 +56,30 @@ std::vector<Point2> evenly(std::span<const Point2> ends) {
   return some;
 }
 
+/// Of each table cell the point next to its middle: passes over the same surface leave dozens.
+std::vector<mapping::registration::SurfacePoint> one_a_cell(
+    const std::vector<mapping::registration::SurfacePoint>& points) {
+  std::unordered_map<std::uint64_t, std::size_t> place_of_cell;
+  std::vector<mapping::registration::SurfacePoint> kept;
+  std::vector<double> off2;
+  for (const mapping::registration::SurfacePoint& point : points) {
+    const Point2 in_table = point.position / kTableCellM;
+    const Point2 cell = in_table.array().floor();
+    const double off = (in_table - cell - Point2::Constant(0.5)).squaredNorm();
+    const auto word = [](double at) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(at)); };
+    const std::uint64_t key = std::uint64_t{word(cell.x())} << 32U | word(cell.y());
+    const auto [at, is_new] = place_of_cell.try_emplace(key, kept.size());
+    if (is_new) {
+      kept.push_back(point);
+      off2.push_back(off);
+    } else if (off < off2[at->second]) {
+      kept[at->second] = point;
+      off2[at->second] = off;
+    }
+  }
+  return kept;
+}
+
 PoseCovariance covariance_of(const Eigen::Matrix3d& by_ends, const Eigen::Matrix3d& known,
                              const SubmapMatchParams& params) {
   const double unobserved_m2 = kUnobservedM * kUnobservedM;
@@ -90,7 +115,7 @@ std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, do
     found->field_from_scan = window.centre;
     found->is_at_rim = false;
   }
-  if (!surface_) surface_.emplace(std::move(points_), kTableCellM, kReachM);
+  if (!surface_) surface_.emplace(one_a_cell(points_), kTableCellM, kReachM);
   // Ends share errors: what was known before weighs as much more.
   const mapping::registration::Registration refined = mapping::registration::registration(
       ends, *surface_, found->field_from_scan, {known.pose, known.information / kIndependentShare},

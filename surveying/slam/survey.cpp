@@ -105,9 +105,9 @@ Submap submap(const Survey& survey, std::span<const std::uint32_t> nodes, std::u
       const Point2 place = in_frame(end);
       if (is_new(place)) made.ends.push_back(place);
     }
-    const Pose2 turn{0.0, 0.0, frame_from_node.theta};
+    const PointsInMap turned{{0.0, 0.0, frame_from_node.theta}};
     for (const mapping::registration::SurfacePoint& point : survey.keyframes[node].surface) {
-      made.surface.push_back({in_frame(point.position), turn * point.normal});
+      made.surface.push_back({in_frame(point.position), turned(point.normal)});
     }
   }
   return made;
