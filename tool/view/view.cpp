@@ -95,6 +95,7 @@ void view_folder(const ViewOptions& options) {
   for (const daemon::ChangeNote& change : read.changes)
     run.revision = std::max(run.revision, change.revision.value_or(0));
   if (fs::exists(folder / "map_store.sqlite")) run.store = folder / "map_store.sqlite";
+  run.things = folder / "things.jsonl";
   ViewDesk desk{std::move(run), options.port};
   serve(desk, [&read](ViewDesk& to, const std::atomic<bool>& stops) -> std::optional<std::string> {
     for (const daemon::ChangeNote& change : read.changes) to.show(nullptr, change);
@@ -136,7 +137,8 @@ void view_replay(daemon::ReplayJob job, const std::string& name, std::uint16_t p
                  .map = start.map,
                  .revision = start.revision,
                  .first_revision = start.revision,
-                 .store = job.out / "map_store.sqlite"},
+                 .store = job.out / "map_store.sqlite",
+                 .things = job.out / "things.jsonl"},
                 port};
   desk.events().add_orders(recorded.journal.commands());
   if (incident != nullptr) desk.events().add(*incident);

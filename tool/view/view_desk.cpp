@@ -12,6 +12,7 @@
 #include "daemon/live/pose_line.hpp"
 #include "drivers/port/port_clock.hpp"
 #include "localization/particles/particle_sample.hpp"
+#include "tool/view/run_things.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -110,6 +111,7 @@ Answer ViewDesk::answer(const Request& request) {
   if (path == "/") return daemon::page_file("index.html");
   if (path.starts_with("/page/")) return daemon::page_file(std::string_view(path).substr(6));
   if (path == "/api/moment") return moment(request.query);
+  if (path == "/api/things") return things(request.query);
   if (path == "/api/events") return {.type = kJson, .body = events_.json() + "\n"};
   if (path == "/api/history") return {.type = kJson, .body = daemon::history_json(board_) + "\n"};
   if (path.starts_with("/api/revision/")) return revision(path);
@@ -125,6 +127,12 @@ Answer ViewDesk::moment(const std::string& query) const {
   auto messages = moments_.at(*time + kRounding);
   if (!messages) return {.status = 404, .body = "the run has no scan\n"};
   return {.type = "application/octet-stream", .body = *std::move(messages)};
+}
+
+Answer ViewDesk::things(const std::string& query) const {
+  const auto time = time_in(query);
+  if (!time) return {.status = 400, .body = "/api/things?time=T needs a time, Unix s\n"};
+  return {.type = kJson, .body = things_at(run_.things, *time + kRounding) + "\n"};
 }
 
 Answer ViewDesk::revision(const std::string& path) {

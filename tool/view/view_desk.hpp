@@ -29,6 +29,7 @@ struct ViewedRun {
   std::uint32_t revision = 0;        ///< of `map`
   std::uint32_t first_revision = 0;  ///< that the run began on: the store counts from it
   std::filesystem::path store{};     ///< of the run's revisions; may come to be later
+  std::filesystem::path things{};    ///< its things.jsonl; may come to be later
 };
 
 class ViewDesk {
@@ -59,6 +60,7 @@ class ViewDesk {
   void keep_lasting(Timestamp now, const mapping::StoreScan& awareness);
   [[nodiscard]] daemon::dashboard::Answer answer(const daemon::dashboard::Request& request);
   [[nodiscard]] daemon::dashboard::Answer moment(const std::string& query) const;
+  [[nodiscard]] daemon::dashboard::Answer things(const std::string& query) const;
   [[nodiscard]] daemon::dashboard::Answer revision(const std::string& path);
   [[nodiscard]] std::string run_message() const;
   void refresh();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of things, newest first: what has come, gone and moved. Asked for whenever the map has another revision; a run
-// that is over has none.
+// The list of things, newest first: what has come, gone and moved. Asked for whenever the map has another revision; of a
+// run that is over, whenever another second of it is shown.
 
 import { explain } from "./glossary.js";
 import { clock } from "./time_text.js";
@@ -39,11 +39,12 @@ export class Things {
   }
 
   async ask_where_due() {
-    const newest = this.model.revision ?? this.model.status?.newest_revision ?? null;
-    if (this.model.run || newest === null || newest === this.revision || performance.now() - this.asked < ASK_EVERY_MS) return;
+    const shown = this.model.run ? this.model.pose?.time : null;  // of a run
+    const newest = shown ? Math.floor(shown) : this.model.run ? null : this.model.revision ?? this.model.status?.newest_revision ?? null;
+    if (newest === null || newest === this.revision || (!shown && performance.now() - this.asked < ASK_EVERY_MS)) return;
     this.asked = performance.now();
     try {
-      const answer = await fetch("/api/things", { signal: AbortSignal.timeout(10000) });
+      const answer = await fetch(shown ? `/api/things?time=${shown}` : "/api/things", { signal: AbortSignal.timeout(10000) });
       if (!answer.ok) return;
       this.model.things = (await answer.json()).things.filter(is_there);
       this.revision = newest;
