@@ -32,11 +32,13 @@ struct TrajectoryPoint {
 [[nodiscard]] std::string tum_line(const TrajectoryPoint& point);
 
 struct StageCpu {
-  double decoding_s = 0.0;  ///< live: the whole io thread
+  double decoding_s = 0.0;  ///< live: the whole io thread; of a replay all that the others are not
   double localization_s = 0.0;
   double awareness_s = 0.0;
   double map_update_s = 0.0;
   double recording_s = 0.0;  ///< recording and output files
+
+  [[nodiscard]] double sum_s() const { return decoding_s + localization_s + awareness_s + map_update_s + recording_s; }
 };
 
 /// How long the localizer held its pose for what (Belief::verdict).

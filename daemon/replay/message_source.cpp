@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/telemetry/cpu_timer.hpp"
 
 namespace deltamap::daemon {
 
@@ -23,7 +22,6 @@ std::optional<RecordedMessage> FileMessages::next() {
 
 /// Of one record the odometry goes first: a scan is looked at with all that the wheels have told.
 bool FileMessages::read_on() {
-  const CpuTimer timer{cpu_s_};
   const auto replayed = port_.next();
   if (!replayed) return false;
   std::vector<Scan> scans;

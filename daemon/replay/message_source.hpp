@@ -35,8 +35,6 @@ class MessageSource {
   [[nodiscard]] virtual std::map<std::string, std::uint64_t> wire() const = 0;
   /// At the end, and once: what of the recording lies outside the window. Reads on to the recording's end.
   [[nodiscard]] virtual OutsideWindow outside_window() = 0;
-  /// CPU seconds of this thread for reading and decoding.
-  [[nodiscard]] virtual double cpu_s() const = 0;
 };
 
 /// Reads while it goes on: its memory does not grow with the recording.
@@ -51,7 +49,6 @@ class FileMessages : public MessageSource {
   [[nodiscard]] drivers::port::LogFaults faults() const override { return port_.faults(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> wire() const override { return decoder_.counts(); }
   [[nodiscard]] OutsideWindow outside_window() override;
-  [[nodiscard]] double cpu_s() const override { return cpu_s_; }
 
  private:
   /// False at the end.
@@ -61,7 +58,6 @@ class FileMessages : public MessageSource {
   RecordingDecoder decoder_;
   std::deque<RecordedMessage> waiting_;
   std::uint64_t scans_before_ = 0;
-  double cpu_s_ = 0.0;
 };
 
 }  // namespace deltamap::daemon

@@ -26,7 +26,6 @@ class KeptMessages : public MessageSource {
   [[nodiscard]] drivers::port::LogFaults faults() const override { return drive_.recorded.faults; }
   [[nodiscard]] std::map<std::string, std::uint64_t> wire() const override { return drive_.wire; }
   [[nodiscard]] OutsideWindow outside_window() override { return drive_.outside_window; }
-  [[nodiscard]] double cpu_s() const override { return 0.0; }
 
  private:
   const RecordedDrive& drive_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/replay/replay.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <compare>
 #include <memory>
@@ -26,6 +27,7 @@ Replay::Replay(const Parts& parts, const RunDuties& duties)
 }
 
 void Replay::run(const ReplayProgress& progress) {
+  const CpuTimer timer{run_cpu_s_, tells_times_};
   while (auto next = source_.next()) {
     if (const auto* odometry = std::get_if<Odometry>(&next->message)) {
       take(*odometry, next->number);
@@ -148,8 +150,8 @@ RunReport Replay::finish() {
   add_to(report_, run_.localization());
   report_.gate_times = run_.store_scan().awareness().gate_times;
   report_.cpu = run_.cpu();
-  report_.cpu.decoding_s = source_.cpu_s();
   report_.cpu.recording_s = recording_cpu_s_;
+  report_.cpu.decoding_s = std::max(0.0, run_cpu_s_ - report_.cpu.sum_s());
   report_.latency_of = "localizing one scan, CPU time";
   return report_;
 }

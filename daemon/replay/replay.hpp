@@ -53,6 +53,7 @@ class Replay {
   bool has_begun_ = false;
   bool is_paused_ = false;
   SequentialRun run_;
+  double run_cpu_s_ = 0.0;  // in all
   double recording_cpu_s_ = 0.0;
   RunReport report_;
 };

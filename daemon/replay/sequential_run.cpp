@@ -16,10 +16,7 @@ SequentialRun::SequentialRun(const Settings& settings, const StartMap& start, co
       transients_{journal},
       tells_times_{duties.tells_times} {}
 
-void SequentialRun::observe(const Odometry& odometry) {
-  const CpuTimer timer{cpu_.localization_s, tells_times_};
-  localization_.observe(odometry);
-}
+void SequentialRun::observe(const Odometry& odometry) { localization_.observe(odometry); }
 
 void SequentialRun::take_what_is_due(const Scan& scan) {
   const CpuTimer timer{cpu_.localization_s, tells_times_};
