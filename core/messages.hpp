@@ -193,6 +193,7 @@ struct ScanSet {
   std::vector<CellVerdict> verdicts;  ///< evidence: the cells to write, judged at the localizer's poses; paper: empty
   PoseCovariance covariance = PoseCovariance::Zero();  ///< of the localizer's pose when the set ended
   bool pose_in_doubt = false;        ///< the pose did not hold over the whole set: nothing of it may be written
+  std::uint32_t least_changes = 1;   ///< cells; fewer are not worth a revision yet: another look will find them again
   std::optional<Timestamp> settled;  ///< what was written up to then is provisional no longer
 };
 

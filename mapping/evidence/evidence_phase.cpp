@@ -279,6 +279,7 @@ std::optional<ScanSet> EvidencePhase::another_look(Timestamp time) {
   if (!look) return std::nullopt;
   ScanSet set;
   set.ended = time;
+  if (!look->is_last) set.least_changes = params_.least_look_cells;
   for (const std::uint32_t index : look->blocks) {
     add_verdicts(votes::Question::kAdded, layer_.blocks().cell_of(index), set.verdicts);
   }

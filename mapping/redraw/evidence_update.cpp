@@ -217,7 +217,7 @@ scan_set::MapUpdate evidence_update(const OccupancyGrid& map, const ScanSet& set
   draft = without_enclosed_free_space(std::move(draft), placement.scans, params.most_enclosed_m2);
   update.changes = draft.changes();
   update.acceptance = acceptance(counts, draft.map(), params.occupied_hit_share).value();
-  if (update.changes.empty()) update.refusal = scan_set::Refusal::kNothingChanged;
+  if (update.changes.size() < set.least_changes) update.refusal = scan_set::Refusal::kNothingChanged;
   if (update.acceptance < params.least_acceptance) update.refusal = scan_set::Refusal::kLowAcceptance;
   if (!update.accepted()) update.changes.clear();
   return update;

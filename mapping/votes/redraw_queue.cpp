@@ -18,7 +18,7 @@ void RedrawQueue::forget(std::vector<Region>::iterator region) {
 
 void RedrawQueue::watch(const std::vector<std::uint32_t>& blocks, int margin_blocks, std::uint32_t first_ms) {
   if (blocks.empty() || params_.looks == 0 || params_.most_watched == 0) return;
-  Region region{{{}, first_ms}, 0, params_.first_look, params_.looks};
+  Region region{{{}, first_ms, false}, 0, params_.first_look, params_.looks};
   std::vector<std::uint32_t>& wide = region.look.blocks;
   for (const std::uint32_t index : blocks) {
     const Cell middle = geometry_.cell_of(index);
@@ -79,7 +79,10 @@ std::optional<Look> RedrawQueue::due_look() {
   Look look = due->look;
   due->seen = 0;
   due->next_look = std::min(3 * due->next_look, kMostBetween);
-  if (--due->looks_left == 0) forget(due);
+  if (--due->looks_left == 0) {
+    look.is_last = true;
+    forget(due);
+  }
   return look;
 }
 

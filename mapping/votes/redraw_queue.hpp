@@ -23,6 +23,7 @@ struct RedrawQueueParams {
 struct Look {
   std::vector<std::uint32_t> blocks;
   std::uint32_t first_ms = 0;
+  bool is_last = false;  ///< of these blocks
 };
 
 class RedrawQueue {
