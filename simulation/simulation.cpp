@@ -32,6 +32,9 @@ enum class LiveChance : std::uint64_t {
   kFaults
 };
 
+bool carries_requests(const devices::LineFaults& line) { return !line.is_cut && !line.is_deaf && !line.is_unplugged; }
+bool carries_answers(const devices::LineFaults& line) { return !line.is_cut && !line.is_mute && !line.is_unplugged; }
+
 devices::PioneerSetup pioneer_setup(const RobotSetup& robot) {
   devices::PioneerSetup setup;
   setup.model = robot.model;
@@ -109,9 +112,18 @@ void Simulation::advance_to(Timestamp now) {
 void Simulation::run_devices(Timestamp now) {
   now_ = std::max(now_, now);
   fault_schedule_.apply(seconds(now_ - start_), faults_);
-  pioneer_.suffer(faults_.controller);
+  pioneer_.suffer(faults_.robot_line);
+  pioneer_.suffer(faults_.controller, now_);
+  lms200_.suffer(faults_.laser_line);
+  lms200_.suffer(faults_.laser_unit, now_);
   pioneer_.advance(now, history_.wheels_at(now), [&](int index) { return sonar_range_m(index, now); });
   lms200_.advance(now, [&](const devices::SweepRequest& request) { return measure(request); });
+}
+
+FaultOrder Simulation::order(FaultOrder fault) {
+  fault.after_s += seconds(now_ - start_);
+  fault_schedule_.add(fault);
+  return fault;
 }
 
 void Simulation::move(Timestamp from) {
@@ -121,12 +133,15 @@ void Simulation::move(Timestamp from) {
   note_collisions(from + kStep);
   movers_.move(dt_s, surfaces_, robot_body());
   const RobotState& state = body_.state();
-  travelled_m_ += state.speed_m_per_s * dt_s;
-  turned_rad_ += state.turn_rate_rad_per_s * dt_s;
+  const double counted = faults_.body.counts_nothing ? 0.0 : 1.0;
+  const double speed_m_per_s = counted * state.speed_m_per_s;
+  const double turn_rate_rad_per_s = counted * state.turn_rate_rad_per_s;
+  travelled_m_ += speed_m_per_s * dt_s;
+  turned_rad_ += turn_rate_rad_per_s * dt_s;
   history_.add({from + kStep,
                 state.map_from_robot,
-                {state.odom_from_robot, state.speed_m_per_s, state.turn_rate_rad_per_s, travelled_m_, turned_rad_,
-                 state.stalled, state.contact ? std::optional{state.contact->bearing_rad} : std::nullopt},
+                {state.odom_from_robot, speed_m_per_s, turn_rate_rad_per_s, travelled_m_, turned_rad_, state.stalled,
+                 state.contact ? std::optional{state.contact->bearing_rad} : std::nullopt},
                 movers_.bodies()});
 }
 
@@ -221,19 +236,23 @@ Timestamp Simulation::next_event() const {
 }
 
 void Simulation::send_to_robot(std::span<const std::uint8_t> bytes, unsigned host_baud) {
-  pioneer_.receive(bytes, host_baud, now_);
+  if (carries_requests(faults_.robot_line)) pioneer_.receive(bytes, host_baud, now_);
 }
 
 void Simulation::send_to_laser(std::span<const std::uint8_t> bytes, unsigned host_baud) {
-  lms200_.receive(bytes, host_baud, now_);
+  if (carries_requests(faults_.laser_line)) lms200_.receive(bytes, host_baud, now_);
 }
 
 std::vector<std::uint8_t> Simulation::bytes_from_robot(unsigned host_baud) {
-  return pioneer_.transmitted(now_, host_baud);
+  auto bytes = pioneer_.transmitted(now_, host_baud);
+  if (!carries_answers(faults_.robot_line)) bytes.clear();
+  return bytes;
 }
 
 std::vector<std::uint8_t> Simulation::bytes_from_laser(unsigned host_baud) {
-  return lms200_.transmitted(now_, host_baud);
+  auto bytes = lms200_.transmitted(now_, host_baud);
+  if (!carries_answers(faults_.laser_line)) bytes.clear();
+  return bytes;
 }
 
 std::vector<TruthRecord> Simulation::take_truth() {

@@ -39,11 +39,14 @@ class Simulation {
   /// The next moment at which something moves or a burst of bytes is whole; at most 5 ms away.
   [[nodiscard]] Timestamp next_event() const;
 
-  // The host's end of both lines, now. `host_baud` is the speed at which the host's port stands.
+  // The host's end of both lines, now. `host_baud` is the speed at which the host's port stands, or kAnyBaud.
   void send_to_robot(std::span<const std::uint8_t> bytes, unsigned host_baud);
   void send_to_laser(std::span<const std::uint8_t> bytes, unsigned host_baud);
   [[nodiscard]] std::vector<std::uint8_t> bytes_from_robot(unsigned host_baud);
   [[nodiscard]] std::vector<std::uint8_t> bytes_from_laser(unsigned host_baud);
+  // Whether the host has a port to open there.
+  [[nodiscard]] bool has_robot_port() const { return !faults_.robot_line.is_unplugged; }
+  [[nodiscard]] bool has_laser_port() const { return !faults_.laser_line.is_unplugged; }
 
   /// What truly happened since the last call.
   [[nodiscard]] std::vector<TruthRecord> take_truth();
@@ -52,6 +55,12 @@ class Simulation {
   [[nodiscard]] const World& world() const { return world_; }
   /// What goes wrong from now on; the scenario's own faults set and clear theirs at their times.
   [[nodiscard]] Faults& faults() { return faults_; }
+  [[nodiscard]] const Faults& faults() const { return faults_; }
+  /// A fault more, from so long after now. Answers it with its time since the start.
+  FaultOrder order(FaultOrder fault);
+  /// Ends the ordered faults of that name, those that wait too; all of them without one. Answers how many.
+  std::size_t end_faults(std::string_view name = {}) { return fault_schedule_.end(name, faults_); }
+  [[nodiscard]] const FaultSchedule& fault_schedule() const { return fault_schedule_; }
   /// Someone carries the robot there, at once; its wheels notice nothing.
   void carry_robot_to(const Pose2& map_from_robot) { body_.carry_to(map_from_robot); }
   /// What its body has bumped into so far.

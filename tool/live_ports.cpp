@@ -2,13 +2,11 @@
 #include "tool/live_ports.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/file.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -58,16 +56,11 @@ LinksFolder::LinksFolder(const std::filesystem::path& folder) {
 }
 LinksFolder::~LinksFolder() { ::close(descriptor_); }
 
-void LivePorts::sleep_until(Timestamp wake, const SteadyClock& clock, const StopSignals& signals) const {
-  std::array<pollfd, 2> watched{};
-  nfds_t count = 0;
-  for (const auto* port : {&robot, &laser}) {
-    if (port->is_open_elsewhere()) watched[count++] = {port->descriptor(), POLLIN, 0};
-  }
+void sleep_until(Timestamp wake, std::vector<pollfd> watched, const SteadyClock& clock, const StopSignals& signals) {
   const Duration left = std::max(Duration{0}, wake - clock.now());
   const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
   const timespec timeout{static_cast<time_t>(whole.count()), static_cast<long>((left - whole).count())};
-  ::ppoll(watched.data(), count, &timeout, &signals.while_asleep());
+  ::ppoll(watched.data(), watched.size(), &timeout, &signals.while_asleep());
 }
 
 }  // namespace deltamap::tool

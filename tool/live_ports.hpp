@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What plays devices on two pseudo-terminals in real time has in common: links in a folder, a clock, and sleep that a
-// program's bytes or a signal ends.
+// What plays devices on two ports in real time has in common: links in a folder, a clock, and sleep that a program's
+// bytes or a signal ends.
 #pragma once
 
 #include <csignal>
 #include <ctime>
 #include <filesystem>
+#include <vector>
 
 #include "core/time.hpp"
 #include "simulation/devices/pseudo_terminal.hpp"
@@ -50,6 +51,9 @@ class LinksFolder {
   int descriptor_ = -1;
 };
 
+/// Sleeps until a moment, until there is something to read, or until a signal.
+void sleep_until(Timestamp wake, std::vector<pollfd> watched, const SteadyClock& clock, const StopSignals& signals);
+
 /// The links `robot` and `laser` of a folder.
 struct LivePorts {
   LinksFolder folder;
@@ -59,7 +63,12 @@ struct LivePorts {
       : folder{links}, robot{links / "robot"}, laser{links / "laser"} {}
 
   /// Sleeps until a moment, until a program has written to one of the ports, or until a signal.
-  void sleep_until(Timestamp wake, const SteadyClock& clock, const StopSignals& signals) const;
+  void sleep_until(Timestamp wake, const SteadyClock& clock, const StopSignals& signals) const {
+    std::vector<pollfd> watched;
+    robot.watch(watched);
+    laser.watch(watched);
+    tool::sleep_until(wake, std::move(watched), clock, signals);
+  }
 };
 
 }  // namespace deltamap::tool

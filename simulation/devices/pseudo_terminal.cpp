@@ -2,7 +2,6 @@
 #include "simulation/devices/pseudo_terminal.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <stdlib.h>
 #include <termios.h>
 #include <unistd.h>
@@ -119,6 +118,11 @@ void PseudoTerminal::write(std::span<const std::uint8_t> bytes) {
     if (count <= 0) return;
     bytes = bytes.subspan(static_cast<std::size_t>(count));
   }
+}
+
+/// A hang-up would wake at once, again and again.
+void PseudoTerminal::watch(std::vector<pollfd>& watched) const {
+  if (is_open_elsewhere()) watched.push_back({master_, POLLIN, 0});
 }
 
 }  // namespace deltamap::simulation::devices

@@ -75,7 +75,9 @@ std::vector<std::uint8_t> scan_telegram(const lms200::ValueSelection& selection,
                                         lms200::Measurement head) {
   assert(sweeps.size() == selection.mean_of && "as many sweeps as the mean takes");
   for (std::size_t i = 0; i < sweeps.front().size(); ++i) {
-    head.words.push_back(lms200::encoded_beam(mean_of(sweeps, i), coding, head.metres_per_word()));
+    const Beam beam = mean_of(sweeps, i);
+    const bool is_zero = beam.kind == BeamKind::kRange && beam.range_m == 0.0F;  // no range: a laser that is broken
+    head.words.push_back(is_zero ? std::uint16_t{0} : lms200::encoded_beam(beam, coding, head.metres_per_word()));
   }
   if (head.is_partial && head.partial_number != 0) head.words.pop_back();  // 180 values (B6)
   switch (selection.kind) {

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // A device's transmitter: bytes leave one after another at the line's speed and arrive at the host as they would on a
-// wire. Where host and device disagree on the speed, garbage arrives.
+// wire. Where host and device disagree on the speed, garbage arrives; on order the line does worse.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/random.hpp"
 #include "core/time.hpp"
+#include "simulation/devices/line_faults.hpp"
 
 namespace deltamap::simulation::devices {
 
 /// 8N1: start bit, eight data bits, stop bit.
 [[nodiscard]] Duration byte_duration(unsigned baud);
+
+/// Of a stream of bytes that has no speed: always right.
+inline constexpr unsigned kAnyBaud = 0xFFFF'FFFF;
 
 /// What a receiver at one speed makes of bytes sent at another.
 [[nodiscard]] std::vector<std::uint8_t> garbled(std::span<const std::uint8_t> bytes, unsigned sent_baud,
@@ -25,7 +30,7 @@ class SerialLine {
  public:
   SerialLine(unsigned baud, Random random) : baud_{baud}, random_{random} {}
 
-  /// Queues bytes that begin to leave at `not_before`, or when all before them have left.
+  /// Queues a frame that begins to leave at `not_before`, or when all before it has left.
   void send(std::span<const std::uint8_t> bytes, Timestamp not_before);
 
   /// What has not begun to leave by now never will.
@@ -33,7 +38,14 @@ class SerialLine {
 
   /// For the bytes that are sent from now on.
   void set_baud(unsigned baud) { baud_ = baud; }
-  [[nodiscard]] unsigned baud() const { return baud_; }
+  /// At which it speaks, and at which its device must be spoken to.
+  [[nodiscard]] unsigned baud() const { return faults_.baud.value_or(baud_); }
+
+  /// From now on.
+  void suffer(const LineFaults& faults) { faults_ = faults; }
+  /// Hears every frame as it is before the line damages it.
+  using Witness = std::function<void(std::span<const std::uint8_t> frame, Timestamp not_before)>;
+  void set_witness(Witness witness) { witness_ = std::move(witness); }
 
   /// The bytes that have arrived since the last call, as a host at this speed reads them.
   [[nodiscard]] std::vector<std::uint8_t> arrived(Timestamp now, unsigned host_baud);
@@ -54,8 +66,13 @@ class SerialLine {
     [[nodiscard]] Timestamp end() const { return begin + byte_duration(baud) * static_cast<int>(bytes.size()); }
   };
 
+  [[nodiscard]] std::vector<std::uint8_t> damaged(std::span<const std::uint8_t> frame);
+  void queue(std::span<const std::uint8_t> bytes, Timestamp not_before);
+
   unsigned baud_;
   Random random_;
+  LineFaults faults_;
+  Witness witness_;
   std::deque<Burst> bursts_;
   Timestamp idle_at_{};
 };

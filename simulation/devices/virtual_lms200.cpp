@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/measurement.hpp"
@@ -68,12 +69,12 @@ void VirtualLms200::receive(std::span<const std::uint8_t> bytes, unsigned host_b
 void VirtualLms200::take(const lms200::Telegram& telegram, Timestamp now) {
   line_.interrupt(now);  // a request interrupts a running output (B1)
   const Timestamp acknowledged = now + duration_from_seconds(kAcknowledgeDelay_s);
-  if (naks_owed_ > 0) {
-    --naks_owed_;
+  if (naks_owed_ > 0 || faults_.sends_naks) {
+    naks_owed_ = std::max(0, naks_owed_ - 1);
     line_.send(std::vector{lms200::kNakByte}, acknowledged);
     return;
   }
-  line_.send(std::vector{lms200::kAckByte}, acknowledged);
+  if (!faults_.sends_no_acks) line_.send(std::vector{lms200::kAckByte}, acknowledged);
   sweeps_.clear();
   const auto wanted = telegram.command != command::kSetMode ? lms200::requested_selection(telegram) : std::nullopt;
   if (wanted && can_send(*wanted)) {
@@ -231,6 +232,17 @@ void VirtualLms200::give(const Answer& answer) {
   if (answer.restarts) cut_power(line_.idle_at());
 }
 
+void VirtualLms200::suffer(const LaserUnitFaults& faults, Timestamp now) {
+  const LaserUnitFaults before = std::exchange(faults_, faults);
+  if (faults.restarts != before.restarts) cut_power(now, faults.start_up_s);
+}
+
+void VirtualLms200::suffer(const LineFaults& faults) {
+  const unsigned before = line_.baud();
+  line_.suffer(faults);
+  if (line_.baud() != before) decoder_.set_baud(line_.baud());
+}
+
 void VirtualLms200::cut_power(Timestamp now, std::optional<double> start_up_s) {
   line_.interrupt(now);
   begin_start_up(now, start_up_s.value_or(setup_.start_up_s));
@@ -261,7 +273,7 @@ void VirtualLms200::begin_start_up(Timestamp now, double start_up_s) {
 
 void VirtualLms200::set_baud(unsigned baud) {
   line_.set_baud(baud);
-  decoder_.set_baud(baud);
+  decoder_.set_baud(line_.baud());
 }
 
 lms200::ScanVariant VirtualLms200::swept() const { return selection().is_partial() ? kPartialVariant : variant_; }
@@ -303,7 +315,7 @@ void VirtualLms200::sweep(Timestamp end, const Measure& measure) {
 void VirtualLms200::send_sweeps(const lms200::ValueSelection& selected, Timestamp end) {
   lms200::Measurement head;
   head.unit_code = configuration_.units() == lms200::Units::kMillimetre ? 1 : 0;
-  head.status = status_;
+  head.status = faults_.status != 0 ? faults_.status : status_;
   head.is_partial = selected.is_partial();
   if (head.is_partial) head.partial_number = raster(end);
   if (configuration_.sends_real_time_indices()) {

@@ -17,6 +17,7 @@
 #include "drivers/lms200/telegram.hpp"
 #include "drivers/lms200/value_selection.hpp"
 #include "drivers/lms200/variant.hpp"
+#include "simulation/devices/controller_faults.hpp"
 #include "simulation/devices/serial_line.hpp"
 
 namespace deltamap::simulation::devices {
@@ -64,6 +65,11 @@ class VirtualLms200 {
   void nack_next_request() { ++naks_owed_; }                       ///< as a disturbed line would make it
   void set_status_byte(std::uint8_t status) { status_ = status; }  ///< of the scans, B6
 
+  /// What changes in them happens now.
+  void suffer(const LaserUnitFaults& faults, Timestamp now);
+  void suffer(const LineFaults& faults);
+  void set_witness(SerialLine::Witness witness) { line_.set_witness(std::move(witness)); }
+
   [[nodiscard]] bool is_streaming() const { return stream_.has_value(); }
   [[nodiscard]] unsigned baud() const { return line_.baud(); }
   [[nodiscard]] const drivers::lms200::Configuration& configuration() const { return configuration_; }
@@ -100,6 +106,7 @@ class VirtualLms200 {
   [[nodiscard]] Timestamp next_sweep_end() const;
 
   Lms200Setup setup_;
+  LaserUnitFaults faults_;
   Random random_;
   SerialLine line_;
   drivers::lms200::TelegramDecoder decoder_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "drivers/pioneer/config_packet.hpp"
 #include "drivers/pioneer/extra_packets.hpp"
@@ -127,6 +128,21 @@ void VirtualPioneer::obey(const Command& command, Timestamp now) {
   }
 }
 
+void VirtualPioneer::suffer(const ControllerFaults& faults, Timestamp now) {
+  const ControllerFaults before = std::exchange(faults_, faults);
+  if (faults.resets != before.resets) reset(now);
+  if (faults.stop_button != before.stop_button) faults.stop_button ? press_stop_button() : release_stop_button();
+  if (faults.estall != before.estall) faults.estall ? begin_estall() : end_estall();
+  if (faults.motors_button_presses != before.motors_button_presses) press_motors_button();
+  if (faults.fault_flags != before.fault_flags) fail(faults.fault_flags);
+}
+
+void VirtualPioneer::suffer(const LineFaults& faults) {
+  const unsigned before = line_.baud();
+  line_.suffer(faults);
+  if (line_.baud() != before) decoder_.set_baud(line_.baud());
+}
+
 void VirtualPioneer::disconnect() {
   state_ = State::kAwaitingSync0;
   motors_enabled_ = sonar_on_ = encoder_stream_ = io_stream_ = false;
@@ -136,7 +152,7 @@ void VirtualPioneer::disconnect() {
 
 void VirtualPioneer::set_baud(unsigned baud) {
   line_.set_baud(baud);
-  decoder_.set_baud(baud);
+  decoder_.set_baud(line_.baud());
 }
 
 void VirtualPioneer::reset(Timestamp now) {
@@ -216,7 +232,8 @@ void VirtualPioneer::add_battery(pioneer::Sip& sip) const {
 }
 
 void VirtualPioneer::add_contact(pioneer::Sip& sip) const {
-  sip.left_stall = sip.right_stall = motion_.stalled;
+  sip.left_stall = sip.right_stall = motion_.stalled || faults_.tells_stall;
+  sip.front_bumpers = faults_.front_bumpers;
   if (!setup_.has_bumpers || !motion_.contact_bearing_rad) return;
   // Segments are numbered clockwise as the robot sees its front, and as one behind sees its rear.
   const bool front = std::abs(*motion_.contact_bearing_rad) <= 0.5 * std::numbers::pi;
@@ -224,7 +241,7 @@ void VirtualPioneer::add_contact(pioneer::Sip& sip) const {
       front ? -*motion_.contact_bearing_rad : -wrapped_angle(*motion_.contact_bearing_rad - std::numbers::pi);
   const int segment = std::clamp(static_cast<int>(std::lround(from_middle_rad / radians(36.0))) + kBumperSegments / 2,
                                  0, kBumperSegments - 1);
-  (front ? sip.front_bumpers : sip.rear_bumpers) = static_cast<std::uint8_t>(1u << segment);
+  (front ? sip.front_bumpers : sip.rear_bumpers) |= static_cast<std::uint8_t>(1u << segment);
 }
 
 /// A sonar of each array fires every 40 ms; a SIP tells the readings that are new.

@@ -64,7 +64,10 @@ class VirtualPioneer {
   /// Whether ENABLE 1 is obeyed meanwhile is not documented: here it is.
   void begin_estall() { motors_enabled_ = false, estall_ = true; }
   void end_estall() { estall_ = false; }
-  void suffer(const ControllerFaults& faults) { faults_ = faults; }
+  /// What changes in them happens now.
+  void suffer(const ControllerFaults& faults, Timestamp now);
+  void suffer(const LineFaults& faults);
+  void set_witness(SerialLine::Witness witness) { line_.set_witness(std::move(witness)); }
   void fail(std::uint16_t fault_flags) { fault_flags_ = fault_flags; }
   void press_motors_button() { motors_enabled_ = !motors_enabled_ && !stop_button_; }
 

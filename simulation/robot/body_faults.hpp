@@ -13,6 +13,7 @@ struct BodyFaults {
   double right_grip = 1.0;
   /// Neither wheel turns, whatever the motors are told; no stall is reported.
   bool wheels_blocked = false;
+  bool counts_nothing = false;  ///< its wheels turn and move the body, its encoders stand
   double pushed_m_per_s = 0.0;  ///< ahead, and its wheels roll along and count it, whatever the motors are told
   Pose2 towed_per_s{};          ///< the body is carried on, m/s and rad/s in its own frame; the wheels notice nothing
 

@@ -60,6 +60,8 @@ Reading FaultyLaser::spoilt(const LaserFaults& faults, const Reading& reading, d
       return {BeamKind::kNotValid, 0.0};
     case LaserFaults::Answer::kDazzled:
       return {BeamKind::kDazzled, 0.0};
+    case LaserFaults::Answer::kZero:
+      return {BeamKind::kRange, 0.0};
   }
   return reading.kind == BeamKind::kRange ? within(faults.scale * reading.range_m, max_range_m) : reading;
 }

@@ -24,7 +24,8 @@ struct LaserFaults {
     kRandom,  ///< each beam a range of its own
     kBeyondMaximum,
     kNotValid,
-    kDazzled
+    kDazzled,
+    kZero  ///< the number 0
   };
   Answer answer = Answer::kMeasured;
   double constant_m = 5.0;      ///< kConstant, > 0

@@ -73,8 +73,10 @@ void Robot::move(const devices::DriveTarget& target, double dt_s, const RayCaste
     state_.contact = RobotContact{turn_between(moved.theta, bearing_in_map), contact->object, ground_speed};
   }
   state_.map_from_robot = moved;
-  state_.odom_from_robot =
-      state_.odom_from_robot * arc(speed * dt_s - half_turn_m, speed * dt_s + half_turn_m, params_.half_track_m);
+  if (!faults_.counts_nothing) {
+    state_.odom_from_robot =
+        state_.odom_from_robot * arc(speed * dt_s - half_turn_m, speed * dt_s + half_turn_m, params_.half_track_m);
+  }
   state_.speed_m_per_s = speed;
   state_.turn_rate_rad_per_s = turn_rate;
 }

@@ -17,8 +17,6 @@
 namespace deltamap::simulation {
 namespace {
 
-constexpr double kShortestFault_s = 0.01;
-
 template <typename Number, std::size_t kCount>
 void expect_one_of(const YamlSection& section, const std::string& key, Number value,
                    const std::array<Number, kCount>& allowed, const std::string& list) {
@@ -123,7 +121,9 @@ FaultOrder fault_of(YamlSection fault) {
   } catch (const std::invalid_argument& error) {
     fault.refuse("fault", std::string(": ") + error.what());
   }
-  order.after_s = fault.number("after_s", 0.0, 0.0, kLongest_s);
+  order.after_s += fault.number("after_s", 0.0, 0.0, kLongest_s);
+  if (fault.has("for_s") && order.fault->is_momentary())
+    fault.refuse("for_s", "is for what lasts: this is over in a moment");
   if (fault.has("for_s")) order.lasts_s = fault.number("for_s", 0.0, kShortestFault_s, kLongest_s);
   fault.expect_no_more();
   return order;

@@ -234,22 +234,22 @@ TEST(VirtualPioneer, TellsAChargerAndAnEmptyOrNoBatteryOnOrder) {
   PioneerRig rig;
   rig.connect();
   EXPECT_FALSE(rig.next_sip()->has(pioneer::sip_flag::kChargerPower));
-  rig.robot.suffer({.charger_power = true, .charge_state = 1});
+  rig.robot.suffer({.charger_power = true, .charge_state = 1}, rig.now);
   (void)rig.next_sip();
   auto sip = rig.next_sip();
   EXPECT_TRUE(sip->has(pioneer::sip_flag::kChargerPower));
   EXPECT_EQ(sip->charge_state, 1);
-  rig.robot.suffer({.battery_v = 0.0});
+  rig.robot.suffer({.battery_v = 0.0}, rig.now);
   (void)rig.next_sip();
   sip = rig.next_sip();
   EXPECT_EQ(sip->battery_decivolts, 0);
   EXPECT_EQ(sip->battery_x10_decivolts, 0);
-  rig.robot.suffer({.tells_no_battery = true});
+  rig.robot.suffer({.tells_no_battery = true}, rig.now);
   (void)rig.next_sip();
   sip = rig.next_sip();
   EXPECT_EQ(sip->battery_decivolts, 0);
   EXPECT_FALSE(sip->battery_x10_decivolts) << "and nothing after it";
-  rig.robot.suffer({});
+  rig.robot.suffer({}, rig.now);
   (void)rig.next_sip();
   EXPECT_EQ(rig.next_sip()->battery_x10_decivolts, 128);
 }

@@ -280,6 +280,50 @@ TEST(ControllerFaults, CountsInTheUnitsOfTheRobotThatItIs) {
   EXPECT_THROW((void)with_robot(empty_hall(0.4), "p3at"), std::runtime_error) << "a hull of 0.5 m";
 }
 
+TEST(LaserFaults, TellsZeroOnAllBeamsAndNoneBecomesARange) {
+  Drive drive;
+  drive.faults().laser.answer = Answer::kZero;
+  (void)drive.run(0.5);
+  EXPECT_TRUE(all_are(drive.run(1.0).scans.back(), BeamKind::kNotValid));
+}
+
+TEST(BodyFaults, DrivesWithoutCountingIt) {
+  Drive drive;
+  drive.faults().body.counts_nothing = true;
+  drive.host.drive(0.3, 0.0);
+  const auto way = drive.run(4.0);
+  EXPECT_GT(way.body_m, 0.8);
+  EXPECT_EQ(way.wheels_m, 0.0);
+  EXPECT_EQ(drive.host.odometry.back().speed_m_per_s, 0.0);
+}
+
+TEST(ControllerFaults, TellsButtonsStallsBumpersAndFaults) {
+  Drive drive;
+  drive.faults().controller = {.tells_stall = true, .front_bumpers = 4, .fault_flags = 0x21, .stop_button = true};
+  (void)drive.run(1.0);
+  const Odometry told = drive.host.odometry.back();
+  EXPECT_TRUE(told.stalled);
+  EXPECT_EQ(told.front_bumpers, 4);
+  EXPECT_EQ(told.fault_flags, 0x21);
+  EXPECT_FALSE(told.motors_enabled);
+  EXPECT_TRUE(drive.host.robot_session.stop_button_is_pressed());
+  drive.faults() = {};
+  (void)drive.run(1.0);
+  EXPECT_FALSE(drive.host.odometry.back().stalled || drive.host.odometry.back().front_bumpers != 0);
+  EXPECT_FALSE(drive.host.robot_session.stop_button_is_pressed());
+}
+
+TEST(ControllerFaults, PressesTheMotorsButtonOnceAndCutsThePowerOnce) {
+  Drive drive;
+  ASSERT_TRUE(drive.host.simulation.robot().motors_enabled());
+  ++drive.faults().controller.motors_button_presses;
+  (void)drive.run(0.2);
+  EXPECT_FALSE(drive.host.simulation.robot().motors_enabled());
+  ++drive.faults().controller.resets;
+  (void)drive.run(0.2);
+  EXPECT_FALSE(drive.host.simulation.robot().is_connected());
+}
+
 TEST(Simulation, CountsEachCollisionOnceWithItsSpeed) {
   Drive drive{empty_hall(10.0)};
   drive.host.drive(0.4, 0.0);
@@ -305,49 +349,6 @@ TEST(Simulation, CountsNoSpeedWhereTheRobotIsTowedIntoAWall) {
   ASSERT_EQ(drive.host.simulation.collisions().size(), 1u);
   EXPECT_EQ(drive.host.simulation.collisions()[0].speed_m_per_s, 0.0);
   EXPECT_FALSE(drive.host.odometry.back().stalled) << "its motors are not asked for anything";
-}
-
-TEST(NamedFaults, SetSomethingAndClearAllOfIt) {
-  for (const NamedFault& fault : named_faults()) {
-    Faults faults;
-    fault.set(faults, fault.usual);
-    EXPECT_NE(faults, Faults{}) << fault.name;
-    fault.clear(faults);
-    // The number of an answer that is not given is of no meaning.
-    faults.laser.constant_m = LaserFaults{}.constant_m;
-    faults.laser.random_most_m = LaserFaults{}.random_most_m;
-    EXPECT_EQ(faults, Faults{}) << fault.name;
-    EXPECT_TRUE(fault.unit.empty() || (fault.usual >= fault.least && fault.usual <= fault.most)) << fault.name;
-  }
-}
-
-TEST(NamedFaults, AreReadWithTheirNumbersOrRefusedInOneLine) {
-  EXPECT_EQ(described(fault_order("laser-constant=2.5", 20.0, 10.0)), "laser-constant=2.5 from 20 s for 10 s");
-  EXPECT_EQ(described(fault_order("laser-turned")), "laser-turned=180 from 0 s");
-  EXPECT_EQ(described(fault_order("laser-repeats", 3.5)), "laser-repeats from 3.5 s");
-  for (const char* wrong : {"laser-dances", "", "laser-repeats=1", "laser-constant=", "laser-constant=x",
-                            "laser-constant=1e9", "laser-constant=2.5 m", "goes-at=nan"}) {
-    EXPECT_THROW((void)fault_order(wrong), std::invalid_argument) << wrong;
-  }
-}
-
-TEST(NamedFaults, BeginAndEndAtTheTimesOfAScenario) {
-  Scenario scenario = parse_scenario(
-      "walls:\n  - [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]\nrobot: {start: [5, 4, 0]}\n"
-      "faults:\n  - {fault: laser-beyond-maximum, after_s: 14, for_s: 3}\n  - {fault: battery=0, after_s: 20}\n",
-      "hall");
-  Host host{scenario, 1};
-  host.run_for(13.5);
-  EXPECT_FALSE(all_are(host.scans.back(), BeamKind::kBeyondMaximum));
-  host.run_for(2.5);
-  EXPECT_TRUE(all_are(host.scans.back(), BeamKind::kBeyondMaximum));
-  host.run_for(3.0);
-  EXPECT_FALSE(all_are(host.scans.back(), BeamKind::kBeyondMaximum));
-  EXPECT_GT(host.odometry.back().battery_v, 10.0);
-  host.run_for(2.0);
-  EXPECT_EQ(host.odometry.back().battery_v, 0.0);
-  EXPECT_THROW((void)parse_scenario("robot: {start: [0, 0, 0]}\nfaults:\n  - {fault: laser-dances}\n", "hall"),
-               std::runtime_error);
 }
 
 }  // namespace
