@@ -23,7 +23,9 @@ void PendingRequest::send_again(Request request, Transmitter& line) {
   most_tries_ = request.tries;
   is_question_ = !request.bytes.empty();
   const Duration on_the_line = line_time(request.bytes.size(), line.baud());
-  deadline_ = line.now() + on_the_line + duration_from_seconds(request.timeout_s);
+  answer_due_ = line.now() + on_the_line + duration_from_seconds(request.timeout_s);
+  const bool awaits_ack = request.ack_timeout_s > 0.0 && request.ack_timeout_s < request.timeout_s;
+  deadline_ = awaits_ack ? line.now() + on_the_line + duration_from_seconds(request.ack_timeout_s) : answer_due_;
   if (is_question_) line.write(std::move(request.bytes));
 }
 

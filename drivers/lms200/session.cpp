@@ -59,6 +59,7 @@ Lms200Output Lms200Session::on_bytes(std::span<const std::uint8_t> bytes, Timest
     watch_.take_no_telegram(chunk.has_garbage, stamp);
     if (mode_ == SessionMode::kLive && !is_streaming()) diagnose(bytes, out.output);
   }
+  watch_line(stamp, out.output);
   return finished(std::move(out));
 }
 
@@ -97,8 +98,9 @@ void Lms200Session::take(const Telegram& telegram, Lms200Output& out) {
 
 void Lms200Session::answer(const Telegram& telegram, Transmitter& line, SessionOutput& out) {
   const bool sets_up = state_ == State::kSettingUp;
-  if (telegram.kind == Telegram::Kind::kAck) return;
-  if (telegram.kind == Telegram::Kind::kNak) {
+  if (telegram.kind == Telegram::Kind::kAck) {
+    if (sets_up) setup_.hear_ack();
+  } else if (telegram.kind == Telegram::Kind::kNak) {
     sets_up ? setup_.hear_nak(line.now()) : watch_.hear_nak(line.now());
   } else if (telegram.command == response::kPowerOn) {
     watch_.expect_power_on(line.now());
@@ -157,6 +159,12 @@ void Lms200Session::diagnose(std::span<const std::uint8_t> bytes, SessionOutput&
   const bool was_swapped = diagnosis_.is_swapped();
   diagnosis_.hear(bytes);
   if (diagnosis_.is_swapped() && !was_swapped) out.log.push_back(diagnosis_.phrase());
+}
+
+void Lms200Session::watch_line(Timestamp now, SessionOutput& out) {
+  if (!is_streaming()) return quality_.forget();
+  if (const auto change = quality_.observe(receiver_.counts(), now))
+    (change->is_disturbed ? out.warnings : out.log).push_back(change->line);
 }
 
 void Lms200Session::fail(std::string reason, SessionOutput& out) {

@@ -13,6 +13,7 @@
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"
 #include "drivers/line_diagnosis.hpp"
+#include "drivers/line_quality.hpp"
 #include "drivers/lms200/params.hpp"
 #include "drivers/lms200/receiver.hpp"
 #include "drivers/lms200/stream_setup.hpp"
@@ -63,6 +64,7 @@ class Lms200Session {
   void go_on_from_watch(Transmitter& line, SessionOutput& out);
   void begin_visits(Transmitter& line);
   void diagnose(std::span<const std::uint8_t> bytes, SessionOutput& out);
+  void watch_line(Timestamp now, SessionOutput& out);
   void fail(std::string reason, SessionOutput& out);
   [[nodiscard]] Timestamp deadline() const;
   [[nodiscard]] Lms200Output finished(Lms200Output out) const;
@@ -74,6 +76,7 @@ class Lms200Session {
   StreamSetup setup_;
   StreamWatch watch_;
   LineDiagnosis diagnosis_{Device::kLaser};  // of the line since the laser was last heard
+  LineQuality quality_{Device::kLaser};      // of the line while it streams
 };
 
 }  // namespace deltamap::drivers::lms200

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kStopPauseS = 0.1;     // B8: then what was on the line is through
 constexpr double kSettlePauseS = 0.45;  // B3: 75 to 434 ms until usable at a new baud
+constexpr double kAckTimeoutS = 0.2;    // B1: it comes within 60 ms; an adapter may hold it back
 constexpr int kMaxInterruptions = 10;
 constexpr int kMaxWrites = 2;  // the EEPROM stands some thousands
 
@@ -50,16 +51,16 @@ Request StreamSetup::request_of(State state, const Receiver& receiver) const {
     case State::kSettling:
       return {{}, kSettlePauseS, 1};
     case State::kSettingVariant:
-      return {variant_request(params_.variant), 1.5, 4};
+      return {variant_request(params_.variant), 1.5, 4, kAckTimeoutS};
     case State::kReadingConfiguration:
     case State::kVerifyingConfiguration:
-      return {configuration_request(), 1.0, 4};
+      return {configuration_request(), 1.0, 4, kAckTimeoutS};
     case State::kEnteringInstallation:
       return {installation_request(), 3.0, 3};
     case State::kWritingConfiguration:
       return {write_configuration_request(receiver.wanted_configuration()), 15.0, 1};  // what came of it is read
     case State::kStarting:
-      return {mode_request(mode::kStreamAll), 1.5, 4};
+      return {mode_request(mode::kStreamAll), 1.0, 4, kAckTimeoutS};
   }
   return {};
 }

@@ -28,6 +28,7 @@ class StreamSetup {
   // What happens.
   /// A telegram that the receiver has taken.
   void answer(const Telegram& telegram, Transmitter& line);
+  void hear_ack() { pending_.hear_ack(); }
   void hear_nak(Timestamp now) { pending_.hear_nak(now); }
   /// Called at the deadline.
   void time_out(Transmitter& line);

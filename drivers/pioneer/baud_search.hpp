@@ -14,7 +14,8 @@ struct BaudProbe {
   Duration echo_timeout{};  ///< how long SYNC0 may remain without an answer
 };
 
-/// One search. `idle`: where the robot waits; `left`: where a connection may have been left.
-[[nodiscard]] std::vector<BaudProbe> baud_search(unsigned idle, unsigned left);
+/// One search. `idle`: where the robot waits; `left`: where a connection may have been left; `wanted`: where
+/// connections of ours are switched to, which a robot may have obeyed although it did not seem so.
+[[nodiscard]] std::vector<BaudProbe> baud_search(unsigned idle, unsigned left, unsigned wanted);
 
 }  // namespace deltamap::drivers::pioneer

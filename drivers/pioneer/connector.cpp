@@ -19,7 +19,7 @@ constexpr std::uint64_t kBytesAtAnotherSpeed = 30;  // more than noise and the r
 }  // namespace
 
 void Connector::start(Transmitter& line) {
-  probes_ = baud_search(idle_baud_, connected_baud_);
+  probes_ = baud_search(idle_baud_, connected_baud_, wanted_baud_);
   probe_ = 0;
   closings_ = 0;
   result_ = Result::kPending;
@@ -97,7 +97,8 @@ void Connector::time_out(Transmitter& line) {
 }
 
 void Connector::end_quiet(Transmitter& line) {
-  if (state_ == State::kClosing) {  // it has gone back to its idle baud
+  if (state_ == State::kClosing) {  // it has gone back to its idle baud: where robots wait, or where this one was found
+    probes_ = baud_search(home_baud_, idle_baud_, wanted_baud_);
     probe_ = 0;
     return probe(line);
   }

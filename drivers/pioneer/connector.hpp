@@ -19,8 +19,10 @@ namespace deltamap::drivers::pioneer {
 
 class Connector {
  public:
-  /// `idle_baud`: where the robot waits for a connection; `connected_baud`: where one of ours may have been left.
-  Connector(unsigned idle_baud, unsigned connected_baud) : idle_baud_{idle_baud}, connected_baud_{connected_baud} {}
+  /// `idle_baud`: where the robot waits for a connection; `connected_baud`: where one of ours may have been left, and
+  /// to which each is switched.
+  Connector(unsigned idle_baud, unsigned connected_baud)
+      : home_baud_{idle_baud}, idle_baud_{idle_baud}, connected_baud_{connected_baud}, wanted_baud_{connected_baud} {}
 
   void start(Transmitter& line);
   /// A packet that the receiver has taken.
@@ -66,8 +68,10 @@ class Connector {
   void send_sync(std::uint8_t step, Transmitter& line);
   void take_echo(const Packet& packet, Transmitter& line);
 
-  unsigned idle_baud_;
+  unsigned home_baud_;  // where it should wait
+  unsigned idle_baud_;  // where it was found waiting
   unsigned connected_baud_;
+  unsigned wanted_baud_;
   State state_ = State::kQuieting;
   Result result_ = Result::kPending;
   std::vector<BaudProbe> probes_;

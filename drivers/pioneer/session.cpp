@@ -54,6 +54,7 @@ PioneerOutput PioneerSession::on_bytes(std::span<const std::uint8_t> bytes, Time
     answer(packet, line);
   }
   if (state_ == State::kConnecting) connector_.notice_another_speed(receiver_, stamp);
+  watch_line(stamp, out.output);
   return finished(stamp, std::move(out));
 }
 
@@ -204,6 +205,12 @@ void PioneerSession::go_on_switching(Transmitter& line) {
   last_sip_ = line.now();
   connector_.remember_connection(baud());
   if (baud() != baud_switch_.fast_baud()) set_points_.pulse_at(line.now());  // it has waited for long
+}
+
+void PioneerSession::watch_line(Timestamp now, SessionOutput& out) {
+  if (!is_connected()) return quality_.forget();
+  if (const auto change = quality_.observe(receiver_.counts(), now))
+    (change->is_disturbed ? out.warnings : out.log).push_back(change->line);
 }
 
 void PioneerSession::fail(std::string reason, Transmitter& line) {

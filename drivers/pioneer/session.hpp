@@ -19,6 +19,7 @@
 #include "core/time.hpp"
 #include "drivers/decoder_counts.hpp"
 #include "drivers/line_diagnosis.hpp"
+#include "drivers/line_quality.hpp"
 #include "drivers/pioneer/baud_switch.hpp"
 #include "drivers/pioneer/command_queue.hpp"
 #include "drivers/pioneer/connector.hpp"
@@ -100,6 +101,7 @@ class PioneerSession {
   void keep_alive(Transmitter& line);
   void begin_switch(Transmitter& line);
   void go_on_switching(Transmitter& line);
+  void watch_line(Timestamp now, SessionOutput& out);
   void fail(std::string reason, Transmitter& line);
   void write_due(Transmitter& line);
   void stop_after_a_gap(Transmitter& line);
@@ -118,6 +120,7 @@ class PioneerSession {
   SetPoints set_points_;
   Farewell farewell_;
   LineDiagnosis diagnosis_{Device::kRobot};
+  LineQuality quality_{Device::kRobot};  // of the line while it is connected
 };
 
 }  // namespace deltamap::drivers::pioneer

@@ -77,5 +77,16 @@ TEST_F(PendingRequestTest, WritesNothingInAPauseAndHearsNoNakInIt) {
   EXPECT_FALSE(pending.may_be_sent_again());
 }
 
+TEST_F(PendingRequestTest, IsAskedAgainSoonerWhereNoAckCameEither) {
+  const Request patient{status_request(), 1.5, 4, 0.4};
+  const Duration on_the_line = line_time(status_request().size(), 9600);
+  begin(patient);
+  EXPECT_EQ(pending.deadline(), now + on_the_line + milliseconds{400});
+  pending.hear_ack();
+  EXPECT_EQ(pending.deadline(), now + on_the_line + milliseconds{1500});
+  send_again(patient);
+  EXPECT_EQ(pending.deadline(), now + on_the_line + milliseconds{400}) << "of this one no ACK has come";
+}
+
 }  // namespace
 }  // namespace deltamap::drivers::lms200
