@@ -43,25 +43,28 @@ struct VirtualDaemon::Process {
       : owner{its_owner},
         kept{{its_owner.params_.kept_file, "/dev/robot"}},
         listener{its_owner.params_.listener ? its_owner.params_.listener(telemetry) : nullptr},
-        robot{PortId::kRobot,
-              PioneerSession{robot_params(its_owner.params_.settings, kept), drivers::SessionMode::kLive},
-              {[this](std::span<const std::uint8_t> bytes, unsigned baud) { owner.write_to_robot(bytes, baud); },
-               [this](PioneerOutput& out) { take(out); },
-               [this](std::string note) { record(PortId::kRobot, {}, std::move(note)); }}},
+        robot{
+            PortId::kRobot,
+            PioneerSession{robot_params(its_owner.params_.settings, kept), drivers::SessionMode::kLive},
+            {[this](std::span<const std::uint8_t> bytes, unsigned baud) { owner.devices_.send_to_robot(bytes, baud); },
+             [this](PioneerOutput& out) { take(out); },
+             [this](std::string note) { record(PortId::kRobot, {}, std::move(note)); },
+             [this](const std::string& line) { tell("robot: " + line); }}},
         laser{
             PortId::kLaser,
             Lms200Session{its_owner.params_.settings.laser.session, drivers::SessionMode::kLive},
             {[this](std::span<const std::uint8_t> bytes, unsigned baud) { owner.devices_.send_to_laser(bytes, baud); },
              [this](Lms200Output& out) { take(out); },
-             [this](std::string note) { record(PortId::kLaser, {}, std::move(note)); }}},
+             [this](std::string note) { record(PortId::kLaser, {}, std::move(note)); },
+             [this](const std::string& line) { tell("laser: " + line); }}},
         desk{true,
              its_owner.params_.settings.navigation.safety,
              {.session = robot.session(),
               .kept = kept,
               .telemetry = telemetry,
               .obey = [this](PioneerOutput out) { robot.handle(std::move(out), now()); },
-              .log = [this](const std::string& line) { owner.log_.push_back(line); },
-              .warn = [this](const std::string& line) { owner.log_.push_back(line); }}},
+              .log = [this](const std::string& line) { tell(line); },
+              .warn = [this](const std::string& line) { tell(line); }}},
         pilot{its_owner.params_.settings} {
     if (its_owner.params_.map == nullptr) return;
     const daemon::StartMap start{.map = its_owner.params_.map};
@@ -69,7 +72,12 @@ struct VirtualDaemon::Process {
     run.emplace(its_owner.params_.settings, start, nullptr, kMapDelayS);
   }
 
-  [[nodiscard]] Timestamp now() const { return owner.devices_.now(); }
+  [[nodiscard]] Timestamp now() const { return owner.host_time_; }
+  void tell(const std::string& line) const { owner.log_.push_back(line); }
+  void tell(const drivers::SessionOutput& out) const {
+    owner.log_.insert(owner.log_.end(), out.warnings.begin(), out.warnings.end());
+    owner.log_.insert(owner.log_.end(), out.log.begin(), out.log.end());
+  }
 
   void take(PioneerOutput& out) {
     for (const Odometry& odometry : out.odometry) {
@@ -78,13 +86,14 @@ struct VirtualDaemon::Process {
       owner.last_odometry_ = now();
       if (run) run->observe(odometry);
     }
-    owner.log_.insert(owner.log_.end(), out.output.log.begin(), out.output.log.end());
+    tell(out.output);
     desk.set_port_open(robot.is_open());
     telemetry.robot_up.set(desk.robot_is_connected());
     desk.obey_permission(now());
   }
 
   void take(Lms200Output& out) {
+    tell(out.output);
     for (Scan& scan : out.scans) {
       scan.number = scans++;
       desk.set_nominal_scan_period(laser.session().nominal_period_s());
@@ -119,7 +128,7 @@ struct VirtualDaemon::Process {
     seen.times_let_drive = telemetry.times_let_drive.value();
     if (run) {
       seen.fit = run->localization().fit();
-      for (const daemon::LogLine& line : run->localization().lines()) owner.log_.push_back(line.text);
+      for (const daemon::LogLine& line : run->localization().lines()) tell(line.text);
       seen.start_fits = run->localization().start_fits();
       seen.transients = run->store_scan().transients().get();
     }
@@ -180,8 +189,9 @@ VirtualDaemon::~VirtualDaemon() = default;
 
 void VirtualDaemon::start() {
   process_ = std::make_unique<Process>(*this);
-  process_->robot.start(devices_.now());
-  process_->laser.start(devices_.now());
+  follow_clock();
+  process_->robot.start(host_time_);
+  process_->laser.start(host_time_);
 }
 
 void VirtualDaemon::kill() { process_.reset(); }
@@ -190,15 +200,10 @@ daemon::RunListener* VirtualDaemon::listener() const { return process_ ? process
 
 bool VirtualDaemon::is_alive() const { return process_ != nullptr; }
 
-void VirtualDaemon::pull_adapter(bool is_out) {
-  adapter_is_out_ = is_out;
-  if (is_out && process_ && process_->robot.is_open()) process_->robot.hang_up(devices_.now());
-}
-
 bool VirtualDaemon::operator_says(bool on) {
   if (!process_) return false;
-  const Timestamp now = devices_.now();
-  return process_->desk.let_drive({on, 1, now}, now).done || !on;  // an off is kept although nobody can be told
+  return process_->desk.let_drive({on, 1, host_time_}, host_time_).done ||
+         !on;  // an off is kept although nobody can be told
 }
 
 bool VirtualDaemon::is_connected() const { return process_ && process_->desk.robot_is_connected(); }
@@ -217,8 +222,11 @@ std::optional<localization::motion::DriveCalibration> VirtualDaemon::calibration
 
 bool VirtualDaemon::may_drive_by_pose() const { return process_ && daemon::may_drive_by_pose(process_->telemetry); }
 
-void VirtualDaemon::write_to_robot(std::span<const std::uint8_t> bytes, unsigned baud) {
-  if (!line_is_cut_ && !adapter_is_out_) devices_.send_to_robot(bytes, baud);
+bool VirtualDaemon::is_streaming() const { return process_ && process_->telemetry.laser_up.value(); }
+
+void VirtualDaemon::follow_clock() {
+  const Duration ahead = duration_from_seconds(devices_.faults().host_clock_ahead_s);
+  host_time_ = std::max(host_time_, devices_.now() + ahead);
 }
 
 void VirtualDaemon::run(double duration_s, const std::function<void()>& each_step) {
@@ -231,19 +239,21 @@ void VirtualDaemon::run(double duration_s, const std::function<void()>& each_ste
 
 void VirtualDaemon::turn() {
   constexpr unsigned kIdleBaud = 9600;
-  std::vector<std::uint8_t> from_robot = devices_.bytes_from_robot(process_ ? process_->robot.baud() : kIdleBaud);
+  follow_clock();
+  const std::vector<std::uint8_t> from_robot = devices_.bytes_from_robot(process_ ? process_->robot.baud() : kIdleBaud);
   const std::vector<std::uint8_t> from_laser = devices_.bytes_from_laser(process_ ? process_->laser.baud() : kIdleBaud);
   if (!process_) return;
-  if (line_is_cut_ || answers_are_cut_ || adapter_is_out_) from_robot.clear();
-  const Timestamp now = devices_.now();
+  if (on_bytes_) on_bytes_(from_robot, from_laser);
+  const Timestamp now = host_time_;
   if (process_->robot.is_open()) process_->record(PortId::kRobot, from_robot);
   if (process_->laser.is_open()) process_->record(PortId::kLaser, from_laser);
-  process_->robot.turn(from_robot, !adapter_is_out_, now);
-  process_->laser.turn(from_laser, true, now);
+  process_->robot.turn(from_robot, devices_.has_robot_port(), now);
+  process_->laser.turn(from_laser, devices_.has_laser_port(), now);
   if (now < process_->next_tick) return;
   process_->next_tick = now + duration_from_seconds(daemon::kSafetyPeriodS);
   process_->desk.set_port_open(process_->robot.is_open());
   process_->telemetry.robot_up.set(process_->desk.robot_is_connected());
+  process_->telemetry.laser_up.set(process_->laser.is_open() && process_->laser.session().is_streaming());
   process_->desk.tick(now);
   if (process_->listener) process_->listener->look(now);
 }

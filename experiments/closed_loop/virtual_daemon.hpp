@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,16 +45,18 @@ class VirtualDaemon {
 
   // What befalls it.
   /// The robot's line carries nothing in either direction.
-  void cut_line(bool is_cut) { line_is_cut_ = is_cut; }
+  void cut_line(bool is_cut) { devices_.faults().robot_line.is_cut = is_cut; }
   /// Half a cable: the robot hears us, we do not hear it.
-  void cut_answers(bool are_cut) { answers_are_cut_ = are_cut; }
+  void cut_answers(bool are_cut) { devices_.faults().robot_line.is_mute = are_cut; }
   /// The adapter is pulled out: the port hangs up and cannot be opened.
-  void pull_adapter(bool is_out);
+  void pull_adapter(bool is_out) { devices_.faults().robot_line.is_unplugged = is_out; }
   /// `deltamap ctl drive wander` or `drive off`: whether that is kept.
   [[nodiscard]] bool operator_says(bool on);
 
   // What it does.
   [[nodiscard]] bool is_connected() const;
+  /// Scans come from a laser that is set up as wanted.
+  [[nodiscard]] bool is_streaming() const;
   [[nodiscard]] Timestamp last_odometry() const { return last_odometry_; }
   [[nodiscard]] navigation::AllowedMotion last_allowed() const;
   [[nodiscard]] const std::optional<Scan>& last_scan() const { return last_scan_; }
@@ -67,21 +70,27 @@ class VirtualDaemon {
   [[nodiscard]] bool may_drive_by_pose() const;
   /// Of the process that is alive; null: nobody listens.
   [[nodiscard]] daemon::RunListener* listener() const;
+  /// Of the clock that stamps what it hears: the devices' unless it has leapt; it never goes back.
+  [[nodiscard]] Timestamp host_time() const { return host_time_; }
+  /// Hears every byte that reaches it from the robot and from the laser, as it is after the line.
+  using Bytes = std::span<const std::uint8_t>;
+  void set_listener(std::function<void(Bytes from_robot, Bytes from_laser)> on_bytes) {
+    on_bytes_ = std::move(on_bytes);
+  }
   /// Lines of its log, of all processes so far.
   [[nodiscard]] const std::vector<std::string>& log() const { return log_; }
 
  private:
   struct Process;
   void turn();
-  void write_to_robot(std::span<const std::uint8_t> bytes, unsigned baud);
+  void follow_clock();
 
   simulation::Simulation& devices_;
   Params params_;
   std::unique_ptr<Process> process_;  // what dies with it
-  bool line_is_cut_ = false;
-  bool answers_are_cut_ = false;
-  bool adapter_is_out_ = false;
+  Timestamp host_time_{};
   Timestamp last_odometry_{};
+  std::function<void(Bytes, Bytes)> on_bytes_;
   std::optional<Scan> last_scan_;
   std::optional<Estimate> estimate_;
   std::vector<std::string> log_;

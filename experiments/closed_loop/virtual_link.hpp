@@ -23,6 +23,8 @@ class VirtualLink {
     std::function<void(std::span<const std::uint8_t>, unsigned baud)> write;
     std::function<void(Output&)> on_messages;         ///< after all that the session answers
     std::function<void(std::string note)> on_note{};  ///< a session begins, the line changes its speed; may be empty
+    std::function<void(std::string line)>
+        on_lost{};  ///< what the operator reads where the session has failed; may be empty
   };
   VirtualLink(drivers::port::PortId id, Session session, Hooks hooks)
       : id_{id}, session_{std::move(session)}, hooks_{std::move(hooks)} {}
@@ -45,14 +47,12 @@ class VirtualLink {
     hooks_.on_messages(out);
   }
 
-  /// A port that hangs up, as an adapter that is pulled out.
-  void hang_up(Timestamp now) { lose("the device hung up", now); }
-
-  /// What has come by now.
-  void turn(std::span<const std::uint8_t> bytes, bool can_open, Timestamp now) {
+  /// What has come by now. Without a port it hangs up, as an adapter that is pulled out, and cannot be opened.
+  void turn(std::span<const std::uint8_t> bytes, bool has_port, Timestamp now) {
+    if (is_open() && !has_port) return lose("the device hung up", now);
     if (try_again_at_) {
       if (now < *try_again_at_) return;
-      if (!can_open) return hang_up(now);
+      if (!has_port) return lose("the port is missing", now);
       reconnect_.opened();
       return start(now);
     }
@@ -70,7 +70,9 @@ class VirtualLink {
   }
   void lose(const std::string& reason, Timestamp now) {
     wake_at_.reset();
-    try_again_at_ = reconnect_.failed(reason, now).try_again_at;
+    const drivers::port::Reconnect::Pause pause = reconnect_.failed(reason, now);
+    try_again_at_ = pause.try_again_at;
+    if (pause.log && hooks_.on_lost) hooks_.on_lost(*pause.log);
   }
 
   drivers::port::PortId id_;
