@@ -153,6 +153,10 @@ CarmenImport import_carmen(const fs::path& log, const fs::path& recording, std::
   return done;
 }
 
+void tell_import(const CarmenImport& done, const std::string& recording, bool as_json) {
+  as_json ? print_import_json(done, recording) : print_import_text(done, recording);
+}
+
 void add_import_carmen(CLI::App& import) {
   struct Options {
     std::string log;
@@ -170,7 +174,7 @@ void add_import_carmen(CLI::App& import) {
   command.callback([options] {
     const CarmenImport done = import_carmen(options->log, options->recording, options->no_return_m);
     if (done.survey.cut) std::cerr << "deltamap: warning: " << *done.survey.cut << '\n';
-    options->json ? print_import_json(done, options->recording) : print_import_text(done, options->recording);
+    tell_import(done, options->recording, options->json);
   });
 }
 

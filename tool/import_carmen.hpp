@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "drivers/carmen/carmen_survey.hpp"
 
@@ -23,5 +24,8 @@ struct CarmenImport {
 /// Writes the recording whole or not at all. Throws std::runtime_error: one line that names file and place.
 [[nodiscard]] CarmenImport import_carmen(const std::filesystem::path& log, const std::filesystem::path& recording,
                                          std::optional<double> no_return_m);
+
+/// On the standard output.
+void tell_import(const CarmenImport& done, const std::string& recording, bool as_json);
 
 }  // namespace deltamap::tool

@@ -28,6 +28,7 @@ int run_tool(int argc, const char* const* argv) {
   add_map_quality(map);
   CLI::App& import = *app.add_subcommand("import", "other people's logs as recordings")->require_subcommand(1);
   add_import_carmen(import);
+  add_import_messages(import);
   CLI::App& calibrate =
       *app.add_subcommand("calibrate", "fit the robot's parameters to a recording")->require_subcommand(1);
   add_calibrate_motion(calibrate);

@@ -23,6 +23,7 @@ void add_calibrate_motion(CLI::App& calibrate);
 
 // under `deltamap import`
 void add_import_carmen(CLI::App& import);
+void add_import_messages(CLI::App& import);
 
 void add_replay(CLI::App& app);
 void add_sweep(CLI::App& app);
