@@ -171,6 +171,7 @@ const Rooms kRoomArrows = {
     {"mapping/gate", {}},
     {"mapping/store", {}},
     {"mapping/things", {}},
+    {"mapping/bays", {}},
     {"surveying/calibration", {}},
     {"surveying/grid_registration", {}},
     {"surveying/quality", {}},

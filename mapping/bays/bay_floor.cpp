@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/bays/bay_floor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometry/points_in_map.hpp"
+
+namespace deltamap::mapping::bays {
+namespace {
+
+constexpr double kLeastEdge_m = 0.1;
+constexpr double kMostEdge_m = 0.25;
+constexpr double kCellsAlong = 12.0;  // of the longest side, where the edge lets them be
+constexpr int kMostAlong = 24;        // then the edge grows
+constexpr std::size_t kMostCells = kMostAlong * kMostAlong;
+constexpr double kRim_m = 0.25;  // so far before the bay a face may stand that belongs to what stands in it
+constexpr double kFreeBefore_m = 0.15;
+
+constexpr std::int8_t kSurelyFree = -3;
+constexpr std::int8_t kFree = -2;
+constexpr std::int8_t kTaken = 4;  // from surely free on 1.4 s of looks: a person walks on
+constexpr std::int8_t kSurelyTaken = 6;
+constexpr std::uint8_t kShadowLooks = 2;
+constexpr double kBody_m = 0.9;               // across: no person, and no two beside each other
+constexpr double kSmallBody_m = 0.35;         // across: counts where it stays
+constexpr std::uint32_t kSmallBody_ds = 300;  // so long: people stand for less
+constexpr std::uint32_t kMostWindow_ds = 100;
+
+enum Mark : std::uint8_t { kWentThrough = 1, kEnded = 2, kBehindBody = 4 };
+
+/// Distance of a point from the polygon's sides.
+double distance_from_sides(const Polygon& polygon, const Point2& point) {
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point2& from = polygon[i];
+    const Point2 side = polygon[(i + 1) % polygon.size()] - from;
+    const double share = std::clamp((point - from).dot(side) / side.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (from + share * side - point).norm());
+  }
+  return least;
+}
+
+/// With its x along the longest side.
+double heading_of(const Polygon& polygon) {
+  Point2 longest{0.0, 0.0};
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point2 side = polygon[(i + 1) % polygon.size()] - polygon[i];
+    if (side.norm() > longest.norm() + 1e-6) longest = side;
+  }
+  return std::atan2(longest.y(), longest.x());
+}
+
+}  // namespace
+
+/// The cells that a line passes, in its direction, with the distance at which it enters and leaves each.
+struct BayFloor::Path {
+  struct Step {
+    int cell = 0;
+    double from_m = 0.0;
+    double to_m = 0.0;
+  };
+  std::array<Step, 2 * kMostAlong + 2> steps;
+  int count = 0;
+};
+
+BayFloor::BayFloor(const Polygon& polygon) {
+  const Pose2 turned{0.0, 0.0, heading_of(polygon)};
+  Polygon in_bay;
+  for (const Point2& corner : polygon) in_bay.push_back(inverse(turned) * corner);
+  const PolygonBox box = bounding_box(in_bay);
+  const Point2 size = box.high - box.low;
+  const double longest_m = size.maxCoeff();
+  edge_m_ = std::max(std::clamp(longest_m / kCellsAlong, kLeastEdge_m, kMostEdge_m), longest_m / kMostAlong);
+  columns_ = std::clamp(static_cast<int>(std::lround(size.x() / edge_m_)), 1, kMostAlong);
+  rows_ = std::clamp(static_cast<int>(std::lround(size.y() / edge_m_)), 1, kMostAlong);
+  // The cells are centred on the box: half a cell of it may lie beyond.
+  const Point2 spare = size - edge_m_ * Point2{columns_, rows_};
+  const Point2 corner = turned * Point2{box.low + 0.5 * spare};
+  const Pose2 map_from_bay{corner.x(), corner.y(), turned.theta};
+  bay_from_map_ = inverse(map_from_bay);
+  middle_ = turned * Point2{0.5 * (box.low + box.high)};
+  radius_m_ = 0.5 * size.norm() + kRim_m;
+  cells_.resize(static_cast<std::size_t>(columns_ * rows_));
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      FloorCell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+      const Point2 at = map_from_bay * Point2{(column + 0.5) * edge_m_, (row + 0.5) * edge_m_};
+      cell.is_inside = contains(polygon, at);
+      cell.is_core = cell.is_inside && distance_from_sides(polygon, at) >= 0.75 * edge_m_;
+      core_cells_ += cell.is_core ? 1 : 0;
+    }
+  }
+}
+
+void BayFloor::forget() {
+  for (FloorCell& cell : cells_) {
+    cell.seen_ds = 0;
+    cell.free_ds = 0;
+    cell.evidence = 0;
+    cell.shadows = 0;
+    cell.is_body = false;
+  }
+}
+
+BayFloor::Path BayFloor::path_of(const Point2& from, const Point2& direction) const {
+  Path path;
+  const std::array<double, 2> size{columns_ * edge_m_, rows_ * edge_m_};
+  double enters_m = 0.0;
+  double leaves_m = HUGE_VAL;
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    if (std::abs(direction[axis]) < 1e-9) {
+      if (from[axis] < 0.0 || from[axis] >= size[a]) return path;
+      continue;
+    }
+    const double low_m = -from[axis] / direction[axis];
+    const double high_m = (size[a] - from[axis]) / direction[axis];
+    enters_m = std::max(enters_m, std::min(low_m, high_m));
+    leaves_m = std::min(leaves_m, std::max(low_m, high_m));
+  }
+  if (enters_m >= leaves_m) return path;
+  const Point2 begin = from + enters_m * direction;
+  int column = std::clamp(static_cast<int>(begin.x() / edge_m_), 0, columns_ - 1);
+  int row = std::clamp(static_cast<int>(begin.y() / edge_m_), 0, rows_ - 1);
+  const int step_column = direction.x() > 0.0 ? 1 : -1;
+  const int step_row = direction.y() > 0.0 ? 1 : -1;
+  const auto border = [&](int index, int step, int axis) {
+    if (std::abs(direction[axis]) < 1e-9) return HUGE_VAL;
+    return ((index + (step > 0 ? 1 : 0)) * edge_m_ - from[axis]) / direction[axis];
+  };
+  double next_column_m = border(column, step_column, 0);
+  double next_row_m = border(row, step_row, 1);
+  double at_m = enters_m;
+  while (column >= 0 && column < columns_ && row >= 0 && row < rows_ &&
+         path.count < static_cast<int>(path.steps.size())) {
+    const double to_m = std::min({next_column_m, next_row_m, leaves_m});
+    path.steps[static_cast<std::size_t>(path.count++)] = {row * columns_ + column, at_m, to_m};
+    at_m = to_m;
+    if (next_column_m < next_row_m) {
+      column += step_column;
+      next_column_m += edge_m_ / std::abs(direction.x());
+    } else {
+      row += step_row;
+      next_row_m += edge_m_ / std::abs(direction.y());
+    }
+  }
+  return path;
+}
+
+void BayFloor::mark_beam(const Point2& from, const Point2& end) {
+  const double range_m = (end - from).norm();
+  if (range_m <= 0.0) return;
+  const Path path = path_of(from, (end - from) / range_m);
+  const auto cell_of = [&](int step) -> FloorCell& {
+    return cells_[static_cast<std::size_t>(path.steps[static_cast<std::size_t>(step)].cell)];
+  };
+  int first = 0;
+  while (first < path.count && !cell_of(first).is_inside) ++first;
+  int last_core = path.count - 1;
+  while (last_core >= first && !cell_of(last_core).is_core) --last_core;
+  if (last_core < first) return;  // it touches the rim alone
+  const double enters_m = path.steps[static_cast<std::size_t>(first)].from_m;
+  if (range_m < enters_m - kRim_m) return;  // something before the bay covers it
+  int hit = first;
+  while (hit <= last_core && path.steps[static_cast<std::size_t>(hit)].to_m <= range_m) ++hit;
+  const bool ends_inside = hit <= last_core;
+  for (int i = first; i <= std::min(hit, last_core); ++i) {
+    if (path.steps[static_cast<std::size_t>(i)].to_m <= range_m - kFreeBefore_m) cell_of(i).marks |= kWentThrough;
+  }
+  if (!ends_inside) return;
+  FloorCell& face = cell_of(hit);
+  face.marks |= kEnded;
+  if (!face.is_body) return;
+  for (int i = hit + 1; i <= last_core; ++i) {
+    FloorCell& behind = cell_of(i);
+    if (behind.free_ds <= face.since_ds) behind.marks |= kBehindBody;  // else it was free, seen from elsewhere
+  }
+}
+
+void BayFloor::take_marks(std::uint32_t time_ds) {
+  for (FloorCell& cell : cells_) {
+    const std::uint8_t marks = cell.marks;
+    if (marks == 0) continue;
+    cell.marks = 0;
+    if ((marks & kEnded) != 0) {
+      if (cell.evidence < kTaken && cell.evidence + 1 >= kTaken) cell.since_ds = time_ds;
+      cell.evidence = static_cast<std::int8_t>(std::min<int>(cell.evidence + 1, kSurelyTaken));
+      if (cell.evidence >= kTaken) cell.seen_ds = time_ds;
+    } else if ((marks & kWentThrough) != 0) {
+      cell.evidence = static_cast<std::int8_t>(std::max<int>(cell.evidence - 1, kSurelyFree));
+      cell.shadows = 0;
+      cell.free_ds = time_ds;
+      if (cell.evidence <= kFree) cell.seen_ds = time_ds;
+    } else if (cell.evidence < kTaken) {
+      // What was free before the body came says nothing of what is behind it now.
+      if (cell.evidence < 0) cell.evidence = static_cast<std::int8_t>(std::min<int>(cell.evidence + 2, 0));
+      cell.shadows = static_cast<std::uint8_t>(std::min<int>(cell.shadows + 1, kShadowLooks));
+      if (cell.evidence > kFree) cell.seen_ds = time_ds;
+    } else {
+      cell.seen_ds = time_ds;
+    }
+  }
+}
+
+/// Ends of beams that touch each other, and those of them that wait to be looked around.
+struct BayFloor::Cluster {
+  std::array<std::int16_t, kMostCells> members;
+  std::size_t count = 0;
+  int low_column = kMostAlong;
+  int high_column = 0;
+  int low_row = kMostAlong;
+  int high_row = 0;
+
+  void add(int cell, int columns) {
+    members[count++] = static_cast<std::int16_t>(cell);
+    low_column = std::min(low_column, cell % columns);
+    high_column = std::max(high_column, cell % columns);
+    low_row = std::min(low_row, cell / columns);
+    high_row = std::max(high_row, cell / columns);
+  }
+  [[nodiscard]] double across_m(double edge_m) const {
+    return edge_m * std::hypot(high_column - low_column + 0.5, high_row - low_row + 0.5);
+  }
+};
+
+BayFloor::Cluster BayFloor::cluster_from(int start) {
+  Cluster cluster;
+  const auto take = [&](int index) {
+    FloorCell& cell = cells_[static_cast<std::size_t>(index)];
+    if (cell.is_gathered || cell.evidence < kTaken) return;
+    cell.is_gathered = true;
+    cluster.add(index, columns_);
+  };
+  take(start);
+  for (std::size_t next = 0; next < cluster.count; ++next) {
+    const int column = cluster.members[next] % columns_;
+    const int row = cluster.members[next] / columns_;
+    for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
+      for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) take(r * columns_ + c);
+    }
+  }
+  return cluster;
+}
+
+/// Ends of beams that touch each other are one body, where it is too large for a person, or stays.
+void BayFloor::find_bodies(std::uint32_t time_ds) {
+  for (FloorCell& cell : cells_) cell.is_body = cell.is_gathered = false;
+  for (int start = 0; start < columns_ * rows_; ++start) {
+    const Cluster cluster = cluster_from(start);
+    if (cluster.count == 0) continue;
+    std::uint32_t since_ds = time_ds;
+    for (std::size_t i = 0; i < cluster.count; ++i)
+      since_ds = std::min(since_ds, cells_[static_cast<std::size_t>(cluster.members[i])].since_ds);
+    const double across_m = cluster.across_m(edge_m_);
+    const bool stays = across_m >= kSmallBody_m && time_ds - since_ds >= kSmallBody_ds;
+    for (std::size_t i = 0; i < cluster.count; ++i)
+      cells_[static_cast<std::size_t>(cluster.members[i])].is_body = stays || across_m >= kBody_m;
+  }
+}
+
+void BayFloor::look(const TrackedScan& tracked, std::size_t first, std::size_t last, std::uint32_t time_ds) {
+  const PointsInMap in_bay{bay_from_map_ * tracked.estimate.map_from_robot};
+  for (std::size_t i = first; i < last; ++i) {
+    if (tracked.scan.beams[i].kind != BeamKind::kRange) continue;
+    mark_beam(in_bay(tracked.rays[i].origin), in_bay(tracked.rays[i].end));
+  }
+  take_marks(time_ds);
+  find_bodies(time_ds);
+}
+
+bool BayFloor::is_known(const FloorCell& cell, std::uint32_t time_ds, std::uint32_t window_ds) const {
+  if (!cell.is_core || cell.seen_ds == 0 || time_ds - cell.seen_ds > window_ds) return false;
+  return cell.evidence <= kFree || cell.is_body || (cell.evidence < kTaken && cell.shadows >= kShadowLooks);
+}
+
+FloorCounts BayFloor::counts(std::uint32_t time_ds, std::uint32_t window_ds) const {
+  FloorCounts counts;
+  counts.cells = core_cells_;
+  for (const FloorCell& cell : cells_) {
+    counts.body = counts.body || cell.is_body;
+    if (!is_known(cell, time_ds, window_ds)) continue;
+    if (cell.evidence <= kFree)
+      ++counts.free;
+    else if (cell.is_body)
+      ++counts.taken;
+    else
+      ++counts.shadowed;
+  }
+  return counts;
+}
+
+std::uint32_t BayFloor::seen_since_ds(std::uint32_t time_ds, std::uint32_t window_ds, int least_cells) const {
+  std::array<int, kMostWindow_ds + 1> seen{};  // by age
+  const std::uint32_t most_ds = std::min(window_ds, kMostWindow_ds);
+  for (const FloorCell& cell : cells_) {
+    if (is_known(cell, time_ds, most_ds)) ++seen[time_ds - cell.seen_ds];
+  }
+  std::uint32_t age_ds = 0;
+  for (int cells = seen[0]; cells < least_cells && age_ds < most_ds; cells += seen[age_ds]) ++age_ds;
+  return time_ds - age_ds;
+}
+
+}  // namespace deltamap::mapping::bays

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/bays/bay_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deltamap::mapping::bays {
+namespace {
+
+constexpr double kSeenOfEmpty = 0.75;  // of the floor: what could hide in the rest is no load
+constexpr double kSeenOfTaken = 0.7;
+constexpr double kFull = 0.6;       // share from which on a bay is full,
+constexpr double kStaysFull = 0.5;  // and stays so
+constexpr double kPartly = 0.1;     // share from which on it is not empty,
+constexpr double kStaysPartly = 0.06;
+constexpr double kAgainstFull = 0.4;   // free floor that no full bay has
+constexpr double kAgainstEmpty = 0.2;  // taken floor that no empty bay has
+constexpr double kShadowCounts = 0.8;  // as seen
+
+double share_of(int cells, const FloorCounts& counts) {
+  return counts.cells > 0 ? static_cast<double>(cells) / counts.cells : 0.0;
+}
+
+}  // namespace
+
+double taken_share(const FloorCounts& counts) {
+  return counts.known() > 0 ? static_cast<double>(counts.taken + counts.shadowed) / counts.known() : 0.0;
+}
+
+double confidence_in(const FloorCounts& counts) {
+  return share_of(counts.free + counts.taken, counts) + kShadowCounts * share_of(counts.shadowed, counts);
+}
+
+int least_known(const FloorCounts& counts, BayState state) {
+  const double share = state == BayState::kEmpty ? kSeenOfEmpty : kSeenOfTaken;
+  return std::max(1, static_cast<int>(std::ceil(share * counts.cells)));
+}
+
+std::optional<BayState> shown_state(const FloorCounts& counts, BayState so_far) {
+  const double share = taken_share(counts);
+  const bool is_taken = counts.body && share >= (so_far == BayState::kPartly ? kStaysPartly : kPartly);
+  if (!is_taken && counts.free >= least_known(counts, BayState::kEmpty)) return BayState::kEmpty;
+  if (!is_taken || counts.known() < least_known(counts, BayState::kFull)) return std::nullopt;
+  return share >= (so_far == BayState::kFull ? kStaysFull : kFull) ? BayState::kFull : BayState::kPartly;
+}
+
+bool contradicts(const FloorCounts& counts, BayState state) {
+  if (state == BayState::kFull) return share_of(counts.free, counts) >= kAgainstFull;
+  if (state == BayState::kEmpty)
+    return counts.body && share_of(counts.taken + counts.shadowed, counts) >= kAgainstEmpty;
+  return false;
+}
+
+}  // namespace deltamap::mapping::bays

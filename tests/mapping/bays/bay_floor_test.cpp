@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/bays/bay_floor.hpp"
+
+#include "tests/mapping/bays/seen_bays.hpp"
+
+namespace deltamap::mapping::bays {
+namespace {
+
+class BayFloorTest : public SeenBays {
+ protected:
+  void see(BayFloor& floor, const Pose2& from, int looks) {
+    for (int i = 0; i < looks; ++i) {
+      const TrackedScan tracked = test::seen_scan(world, from, 0.0, random, 30.0);
+      floor.look(tracked, 0, tracked.scan.beams.size(), time_ds += 2);
+    }
+  }
+  [[nodiscard]] FloorCounts counts(const BayFloor& floor) const { return floor.counts(time_ds, 100); }
+
+  std::uint32_t time_ds = 1;
+};
+
+TEST_F(BayFloorTest, ATurnedBayHasTheSameFloor) {
+  BayFloor upright{square(kBay, kSide_m)};
+  const Pose2 turned{9.2, 9.2, radians(30.0)};
+  Polygon polygon;
+  for (const Point2& corner : square({-1.2, -1.2}, kSide_m)) polygon.push_back(turned * corner);
+  BayFloor floor{polygon};
+  see(upright, kBefore, 5);
+  see(floor, kBefore, 5);
+  EXPECT_EQ(counts(floor).cells, counts(upright).cells);
+  EXPECT_GT(counts(floor).free, 0.9 * counts(floor).cells);
+}
+
+TEST_F(BayFloorTest, OfAnAngleOnlyItsOwnFloorCounts) {
+  BayFloor angle{{{8.0, 8.0}, {10.4, 8.0}, {10.4, 8.8}, {8.8, 8.8}, {8.8, 10.4}, {8.0, 10.4}}};
+  rebuild({{{9.0, 9.0}, {1.3, 1.3}}});  // in its bay
+  see(angle, kBefore, 20);
+  EXPECT_FALSE(counts(angle).body);
+  EXPECT_GT(counts(angle).free, 0.8 * counts(angle).cells);
+}
+
+TEST_F(BayFloorTest, WhatIsSmallIsABodyOnlyWhereItStays) {
+  BayFloor floor{square(kBay, kSide_m)};
+  rebuild({{kBay + Point2{0.8, 0.8}, {0.5, 0.5}}});
+  see(floor, kBefore, 100);  // 20 s
+  EXPECT_FALSE(counts(floor).body);
+  see(floor, kBefore, 80);
+  EXPECT_TRUE(counts(floor).body);
+}
+
+TEST_F(BayFloorTest, WhatLiesBehindANewFaceIsFreeNoLonger) {
+  BayFloor floor{square(kBay, kSide_m)};
+  see(floor, kBefore, 5);
+  EXPECT_EQ(counts(floor).shadowed, 0);
+  rebuild({{kBay, {2.4, 2.4}}});
+  see(floor, kBefore, 12);
+  EXPECT_EQ(counts(floor).free, 0);
+  EXPECT_GT(counts(floor).shadowed, 0.9 * counts(floor).cells);
+}
+
+TEST_F(BayFloorTest, IsKnownSinceMostOfItWasSeen) {
+  BayFloor floor{square(kBay, kSide_m)};
+  see(floor, kBefore, 5);
+  const std::uint32_t seen_ds = time_ds;
+  time_ds += 20;
+  EXPECT_EQ(floor.seen_since_ds(time_ds, 100, 75), seen_ds);
+  EXPECT_EQ(floor.seen_since_ds(time_ds, 100, 101), time_ds - 100) << "never so much within the window";
+  floor.forget();
+  EXPECT_EQ(counts(floor).known(), 0);
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::bays

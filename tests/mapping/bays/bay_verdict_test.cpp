@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/bays/bay_verdict.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltamap::mapping::bays {
+namespace {
+
+TEST(BayVerdict, FreeFloorIsEmptyWhereThreeQuartersWereSeen) {
+  EXPECT_EQ(shown_state({.cells = 100, .free = 75}, BayState::kUnknown), BayState::kEmpty);
+  EXPECT_EQ(shown_state({.cells = 100, .free = 74}, BayState::kUnknown), std::nullopt);
+}
+
+TEST(BayVerdict, AFaceAndTheShadowBehindItAreFull) {
+  EXPECT_EQ(shown_state({.cells = 100, .free = 0, .taken = 10, .shadowed = 70, .body = true}, BayState::kUnknown),
+            BayState::kFull);
+  EXPECT_EQ(shown_state({.cells = 100, .free = 0, .taken = 10, .shadowed = 50, .body = true}, BayState::kUnknown),
+            std::nullopt)
+      << "too little is known";
+}
+
+TEST(BayVerdict, OnTheBorderOfTwoStatesTheOldOneStays) {
+  const FloorCounts half{.cells = 100, .free = 40, .taken = 10, .shadowed = 45, .body = true};
+  EXPECT_EQ(shown_state(half, BayState::kFull), BayState::kFull);
+  EXPECT_EQ(shown_state(half, BayState::kPartly), BayState::kPartly);
+}
+
+TEST(BayVerdict, AStateIsContradictedByMuchThatItCannotShow) {
+  EXPECT_TRUE(contradicts({.cells = 100, .free = 40}, BayState::kFull));
+  EXPECT_FALSE(contradicts({.cells = 100, .free = 20}, BayState::kFull));
+  EXPECT_FALSE(contradicts({.cells = 100, .taken = 30}, BayState::kEmpty)) << "no body";
+  EXPECT_TRUE(contradicts({.cells = 100, .taken = 10, .shadowed = 20, .body = true}, BayState::kEmpty));
+}
+
+TEST(BayVerdict, WhatLiesBehindAFaceCountsLessThanWhatWasSeen) {
+  EXPECT_DOUBLE_EQ(confidence_in({.cells = 100, .free = 50, .taken = 10, .shadowed = 40}), 0.92);
+  EXPECT_DOUBLE_EQ(taken_share({.cells = 100, .free = 50, .taken = 10, .shadowed = 40}), 0.5);
+  EXPECT_DOUBLE_EQ(taken_share({.cells = 100}), 0.0);
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::bays
