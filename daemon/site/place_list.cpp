@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/site/place_list.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "core/files/shortest_text.hpp"
+
+namespace deltamap::daemon {
+namespace {
+
+[[noreturn]] void refuse_place(const YAML::Node& node, const std::string& file, const std::string& why) {
+  throw std::runtime_error(file + ": line " + std::to_string(node.Mark().line + 1) + ": " + why);
+}
+
+std::string word_in(const YAML::Node& node, const std::string& file, const std::string& key) {
+  if (!node.IsScalar() || node.Scalar().empty()) refuse_place(node, file, "'" + key + "' must be a word or a number");
+  return node.Scalar();
+}
+
+double coordinate_in(const YAML::Node& node, const YAML::Node& corner, const std::string& file) {
+  double value = NAN;
+  if (node && node.IsScalar()) {
+    try {
+      value = node.as<double>();
+    } catch (const YAML::Exception&) {
+      value = NAN;
+    }
+  }
+  if (!std::isfinite(value)) refuse_place(corner, file, "a corner must be [x, y] or {x: …, y: …}, in metres");
+  return value;
+}
+
+Polygon polygon_in(const YAML::Node& node, const std::string& file, const std::string& key) {
+  if (!node.IsSequence() || node.size() < 3) refuse_place(node, file, "'" + key + "' needs at least three corners");
+  Polygon polygon;
+  for (const YAML::Node& corner : node) {
+    const bool is_pair = corner.IsSequence() && corner.size() == 2;
+    const bool is_named = corner.IsMap() && corner.size() == 2;
+    if (!is_pair && !is_named) refuse_place(corner, file, "a corner must be [x, y] or {x: …, y: …}, in metres");
+    polygon.emplace_back(coordinate_in(is_pair ? corner[0] : corner["x"], corner, file),
+                         coordinate_in(is_pair ? corner[1] : corner["y"], corner, file));
+  }
+  return polygon;
+}
+
+ListedPlace place_in(const YAML::Node& node, const std::string& file, const PlaceKeys& keys) {
+  if (!node.IsMap()) refuse_place(node, file, "an entry of '" + keys.list + "' must hold keys and values");
+  ListedPlace place{.id = "", .polygon = {}, .line = node.Mark().line + 1};
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    if (!seen.insert(key).second) refuse_place(entry.first, file, "'" + key + "' stands twice");
+    if (key == keys.id) {
+      place.id = word_in(entry.second, file, key);
+    } else if (key == keys.polygon) {
+      place.polygon = polygon_in(entry.second, file, key);
+    } else if (std::find(keys.words.begin(), keys.words.end(), key) != keys.words.end()) {
+      place.words[key] = word_in(entry.second, file, key);
+    } else {
+      refuse_place(entry.first, file, "nothing is called '" + key + "' here");
+    }
+  }
+  for (const std::string& needed : {keys.id, keys.polygon}) {
+    if (!seen.contains(needed)) refuse_place(node, file, "'" + needed + "' is missing");
+  }
+  return place;
+}
+
+/// Any text, on one line.
+std::string quoted(const std::string& text) {
+  YAML::Emitter out;
+  out << YAML::DoubleQuoted << text;
+  return out.c_str();
+}
+
+std::string in_mm(double length_m) { return shortest_text(std::round(1e3 * length_m) / 1e3 + 0.0); }
+
+}  // namespace
+
+std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& file, const PlaceKeys& keys) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(std::string(yaml));
+  } catch (const YAML::Exception& error) {
+    throw std::runtime_error(file + ": line " + std::to_string(error.mark.line + 1) + ": no YAML: " + error.msg);
+  }
+  const auto expected = [&] {
+    refuse_place(root, file, "must hold '" + keys.list + ":' and a list, and nothing else");
+  };
+  if (!root.IsMap() || root.size() != 1 || !root[keys.list]) expected();
+  const YAML::Node list = root[keys.list];
+  if (list.IsNull()) return {};
+  if (!list.IsSequence()) expected();
+  std::vector<ListedPlace> places;
+  for (const YAML::Node& node : list) places.push_back(place_in(node, file, keys));
+  return places;
+}
+
+std::string places_as_yaml(const std::vector<ListedPlace>& places, const PlaceKeys& keys) {
+  std::string yaml = keys.list + ":\n";
+  for (const ListedPlace& place : places) {
+    yaml += "  - " + keys.id + ": " + quoted(place.id) + "\n";
+    for (const std::string& key : keys.words) {
+      if (const auto word = place.words.find(key); word != place.words.end())
+        yaml += "    " + key + ": " + quoted(word->second) + "\n";
+    }
+    yaml += "    " + keys.polygon + ": [";
+    for (const Point2& corner : place.polygon) {
+      yaml += &corner == &place.polygon.front() ? "[" : ", [";
+      yaml += in_mm(corner.x()) + ", " + in_mm(corner.y()) + "]";
+    }
+    yaml += "]\n";
+  }
+  return yaml;
+}
+
+}  // namespace deltamap::daemon
