@@ -20,6 +20,7 @@
 #include "daemon/records/live_recording.hpp"
 #include "daemon/settings/provenance.hpp"
 #include "daemon/settings/start_error.hpp"
+#include "daemon/site/bays_file.hpp"
 #include "daemon/sockets/listening_socket.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/steps/localization_step.hpp"
@@ -242,6 +243,15 @@ Finding incidents_finding(const fs::path& folder) {
   }
 }
 
+Finding bays_finding(const Settings& settings, const GridGeometry& map) {
+  try {
+    const std::size_t count = bays_on(map, settings.bays.file).size();
+    return {Level::kOk, "bays", settings.bays.file + ": " + counted(count, "bay")};
+  } catch (const std::runtime_error& error) {
+    return {Level::kError, "bays", error.what()};
+  }
+}
+
 /// Opens the page's port for a moment, as a start would, and closes it again.
 Finding page_finding(const DashboardSettings& page) {
   try {
@@ -274,6 +284,7 @@ std::vector<Finding> what_the_service_may_not(const Settings& settings) {
   };
   require_seen("map.file", settings.map.file);
   require_seen("dashboard.token_file", settings.dashboard.token_file);
+  require_seen("bays.file", settings.bays.file);
   const auto require_allowed = [&](const char* key, const std::string& port) {
     const std::string driver = drivers::port::driver_of(port);
     const auto is_allowed = [&](const char* allowed) { return driver == allowed; };
@@ -310,6 +321,7 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
   if (const std::string& file = settings.recording.file; !file.empty()) {
     findings.push_back(place_finding("recording", file, file, [&] { return judged_recording_place(file); }));
   }
+  if (first && !settings.bays.file.empty()) findings.push_back(bays_finding(settings, first->geometry()));
   if (!settings.incidents.folder.empty()) findings.push_back(incidents_finding(settings.incidents.folder));
   if (!out.empty()) {
     findings.push_back(

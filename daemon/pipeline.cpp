@@ -14,6 +14,7 @@
 #include "daemon/live/page_commands.hpp"
 #include "daemon/live/pose_stream.hpp"
 #include "daemon/maps/newest_map.hpp"
+#include "daemon/outputs/bay_note.hpp"
 #include "daemon/outputs/thing_note.hpp"
 #include "daemon/records/map_order.hpp"
 #include "daemon/records/recorder.hpp"
@@ -66,6 +67,7 @@ struct Pipeline::State {
   Options options;
   Telemetry telemetry;
   ThingsBoard things;  // map → control, page
+  BaysBoard bays;      // delta → control, page
 
   Channel<SensorMessage> sensors{128};    // io → localization: the newest message, journaled
   Channel<DeltaWork> tracked_scans{128};  // localization → delta: the newest scan is not looked at for changes,
@@ -120,8 +122,8 @@ Pipeline::State::State(const Settings& given, Options wanted)
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
       newest_lock{newest_map_lock(settings.map)},
       control{control::begun_control_desk(settings, control_wiring(), options.warn)},
-      page{begun_dashboard(settings, options.start, telemetry, things, page_control(control.get(), io), options.log,
-                           options.warn)},
+      page{begun_dashboard(settings, options.start, telemetry, {things, bays}, page_control(control.get(), io),
+                           options.log, options.warn)},
       poses{begun_pose_stream(settings, telemetry, options.warn)},
       incidents{begun_incident_keeper(incident_options(), telemetry, log_tail, {options.log, options.warn})},
       recorder{recorder_options(),
@@ -129,7 +131,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
                {.log = options.log, .saved = [this](const auto& outcome) { tell(outcome); }, .warn = options.warn}},
       io{settings, io_wiring()},
       localization{settings, options.start, options.first_map, localization_wiring()},
-      delta{settings, !options.start.provisional.empty(), delta_wiring()},
+      delta{settings, options.start.map->geometry(), !options.start.provisional.empty(), delta_wiring()},
       map{settings, options.start, options.out, std::move(options.store), map_wiring()} {
   telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
   telemetry.newest_revision.set(options.start.revision);
@@ -160,6 +162,7 @@ control::ControlDesk::Wiring Pipeline::State::control_wiring() {
           .incidents = [this] { return incidents_reply(settings.incidents); },
           .set_log_level = [this](LogLevel level) { return set_log_level(level); },
           .things = [this] { return json_of(*things.newest()); },
+          .bays = [this] { return json_of(*bays.newest(), *things.newest(), drivers::port::port_clock_now()); },
           .patience_s = options.control_patience_s};
 }
 
@@ -233,7 +236,8 @@ DeltaStage::Wiring Pipeline::State::delta_wiring() {
           .warn = options.warn,
           .show = [this](const auto& newest) { return page && page->board().show(newest); },
           .shows_scans = [this] { return page && page->board().is_watched(); },
-          .show_scans = [this](mapping::StoredScans stored) { page->board().show(std::move(stored)); }};
+          .show_scans = [this](mapping::StoredScans stored) { page->board().show(std::move(stored)); },
+          .bays = bays};
 }
 
 MapStage::Wiring Pipeline::State::map_wiring() {

@@ -48,6 +48,7 @@ struct StoreScan::State {
   gate::GatedSets gate;
   scan_set::WaitingScans waiting;
   Awareness awareness;
+  bool pose_holds = false;
 };
 
 StoreScan::StoreScan(const StoreScanParams& params, std::uint64_t seed, bool inherits)
@@ -55,6 +56,8 @@ StoreScan::StoreScan(const StoreScanParams& params, std::uint64_t seed, bool inh
 StoreScan::~StoreScan() = default;
 StoreScan::StoreScan(StoreScan&&) noexcept = default;
 StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;
+
+bool StoreScan::pose_holds() const { return state_->pose_holds; }
 
 const Awareness& StoreScan::awareness() const { return state_->awareness; }
 
@@ -80,11 +83,14 @@ std::optional<MapRequest> StoreScan::observe(const TrackedScan& tracked) {
       set->covariance = tracked.estimate.covariance;
       request = *std::move(set);
     }
+    s.pose_holds =
+        tracked.estimate.state == LocalizerState::kTracking && tracked.estimate.belief.verdict != PoseVerdict::kWrong;
     s.awareness.in_phase = s.paper.is_open();
     s.awareness.phase = s.paper.number();
     s.awareness.stored_scans = s.paper.kept();
   } else {
     request = s.gated_request(tracked);
+    s.pose_holds = s.gate.lets_vote();
     s.awareness.in_phase = s.evidence.waiting() > 0;
     s.awareness.phase = s.evidence.number();
     s.awareness.short_beams = s.evidence.short_beams();

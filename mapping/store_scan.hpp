@@ -56,6 +56,8 @@ class StoreScan {
   [[nodiscard]] std::optional<MapRequest> observe(const TrackedScan& tracked);
 
   [[nodiscard]] const Awareness& awareness() const;
+  /// The newest scan's pose is sure enough to judge by what it saw.
+  [[nodiscard]] bool pose_holds() const;
   [[nodiscard]] StoredScans stored() const;
   /// What is different now and not map (evidence alone): the newest snapshot, another one only where something has
   /// changed. Null until there was something; empty while the pose is in doubt.

@@ -13,6 +13,7 @@ int run_tool(int argc, const char* const* argv) {
   CLI::App app{"deltamap: keeps a robot localized in a map that follows the world", "deltamap"};
   app.set_version_flag("--version", "deltamap " + daemon::version_text());
   app.require_subcommand(1);
+  add_bays(app);
   add_compare(app);
   add_ctl(app);
   add_score(app);

@@ -9,6 +9,7 @@ class App;
 
 namespace deltamap::tool {
 
+void add_bays(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_ctl(CLI::App& app);
 void add_decode(CLI::App& app);

@@ -52,7 +52,7 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
   if (!answer.request) return reply(error_line(answer.refused));
   const Request& request = *answer.request;
   const bool only_asks = request.kind == Request::Kind::kStatus || request.kind == Request::Kind::kIncidents ||
-                         request.kind == Request::Kind::kThings;
+                         request.kind == Request::Kind::kThings || request.kind == Request::Kind::kBays;
   if (!only_asks) wiring_.log("ctl: " + control::words_of(request));
   if (sender_is_gone && request.kind == Request::Kind::kDriveWander) {
     return wiring_.log("ctl: drive wander: not done, who asked for it waits no longer");
@@ -62,6 +62,8 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
       return reply(status_json_line(wiring_.telemetry, settings_, seconds(drivers::port::port_clock_now() - began_)));
     case Request::Kind::kThings:
       return reply(wiring_.things());
+    case Request::Kind::kBays:
+      return reply(wiring_.bays());
     case Request::Kind::kDriveOff:
       return drive(false, request, std::move(reply));
     case Request::Kind::kDriveWander:

@@ -36,6 +36,7 @@ class ControlDesk {
     std::function<std::string()> incidents{};                             ///< the reply that lists them
     std::function<bool(LogLevel)> set_log_level;                          ///< false: this run's log has no levels
     std::function<std::string()> things{};                                ///< one line of JSON: all things
+    std::function<std::string()> bays{};                                  ///< one line of JSON: all bays
     double patience_s = 1.0;  ///< then a sender is told that the daemon is busy
   };
   /// Listens from now on. Throws sockets::AlreadyServed, or std::runtime_error with one line that names the socket.

@@ -17,9 +17,10 @@ using Kind = Request::Kind;
 constexpr double kFarthest_m = 1e6;
 constexpr double kLargest_deg = 1e6;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 7> kPlainCommands{{{"status", Kind::kStatus},
+constexpr std::array<std::pair<std::string_view, Kind>, 8> kPlainCommands{{{"status", Kind::kStatus},
                                                                            {"incidents", Kind::kIncidents},
                                                                            {"things", Kind::kThings},
+                                                                           {"bays", Kind::kBays},
                                                                            {"pause", Kind::kPause},
                                                                            {"resume", Kind::kResume},
                                                                            {"save", Kind::kSave},

@@ -28,6 +28,7 @@ struct Request {
     kUndo,         ///< Δ `revision` alone is taken back
     kUndoThing,    ///< `thing` is taken back
     kThings,       ///< what has come, gone and moved
+    kBays,         ///< what stands in the bays
     kRollBack,     ///< the map is M_`revision` again
     kRecordStart,  ///< a recording that was stopped goes on
     kRecordStop,   ///< the recording stops; the daemon goes on

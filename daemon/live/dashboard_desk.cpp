@@ -10,6 +10,7 @@
 #include "daemon/live/live_messages.hpp"
 #include "daemon/live/metrics_text.hpp"
 #include "daemon/live/page_answers.hpp"
+#include "daemon/outputs/bay_note.hpp"
 #include "daemon/outputs/thing_note.hpp"
 #include "daemon/system/service.hpp"
 #include "drivers/port/port_clock.hpp"
@@ -29,13 +30,13 @@ constexpr const char* kJson = "application/json";
 }  // namespace
 
 DashboardDesk::DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry,
-                             const ThingsBoard& things, PageControl control)
+                             const GoodsBoards& goods, PageControl control)
     : settings_{settings},
       control_{std::move(control)},
       board_{start.map, start.revision},
       history_{settings.map.store},
       telemetry_{telemetry},
-      things_{things},
+      goods_{goods},
       began_{port_clock_now()},
       server_{
           {.address = settings.dashboard.address,
@@ -71,7 +72,9 @@ Answer DashboardDesk::answer(const Request& request) {
   if (path.starts_with("/page/")) return page_file(std::string_view(path).substr(6));
   if (path == "/api/status") return {.type = kJson, .body = status_json() + "\n"};
   if (path == "/api/history") return {.type = kJson, .body = history_json(board_) + "\n"};
-  if (path == "/api/things") return {.type = kJson, .body = json_of(*things_.newest()) + "\n"};
+  if (path == "/api/things") return {.type = kJson, .body = json_of(*goods_.things.newest()) + "\n"};
+  if (path == "/api/bays")
+    return {.type = kJson, .body = json_of(*goods_.bays.newest(), *goods_.things.newest(), port_clock_now()) + "\n"};
   if (path == "/api/scan") return newest_scan();
   if (path.starts_with("/api/incidents")) return incidents_answer(settings_.incidents.folder, path);
   if (path.starts_with("/api/revision/")) return history_.answer(path);
@@ -139,12 +142,12 @@ void DashboardDesk::watched(bool is_watched) {
 }
 
 std::unique_ptr<DashboardDesk> begun_dashboard(const Settings& settings, const StartMap& start,
-                                               const Telemetry& telemetry, const ThingsBoard& things,
+                                               const Telemetry& telemetry, const GoodsBoards& goods,
                                                PageControl control, const std::function<void(const std::string&)>& log,
                                                const std::function<void(const std::string&)>& warn) {
   if (settings.dashboard.port == 0) return nullptr;
   try {
-    auto desk = std::make_unique<DashboardDesk>(settings, start, telemetry, things, std::move(control));
+    auto desk = std::make_unique<DashboardDesk>(settings, start, telemetry, goods, std::move(control));
     log("live page: " + desk->url());
     return desk;
   } catch (const std::exception& error) {

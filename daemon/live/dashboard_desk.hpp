@@ -14,6 +14,7 @@
 #include "daemon/live/live_stream.hpp"
 #include "daemon/live/page_commands.hpp"
 #include "daemon/live/page_history.hpp"
+#include "daemon/outputs/bays_board.hpp"
 #include "daemon/outputs/things_board.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/localization_step.hpp"
@@ -21,10 +22,16 @@
 
 namespace deltamap::daemon {
 
+/// What is known of goods.
+struct GoodsBoards {
+  const ThingsBoard& things;
+  const BaysBoard& bays;
+};
+
 class DashboardDesk {
  public:
   /// Listens from now on. Throws std::runtime_error with one line that names the address, or the token's file.
-  DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry, const ThingsBoard& things,
+  DashboardDesk(const Settings& settings, const StartMap& start, const Telemetry& telemetry, const GoodsBoards& goods,
                 PageControl control = {});
 
   /// Where the stages show themselves.
@@ -56,7 +63,7 @@ class DashboardDesk {
   LiveBoard board_;
   PageHistory history_;
   const Telemetry& telemetry_;
-  const ThingsBoard& things_;
+  GoodsBoards goods_;
   Timestamp began_;
   LiveNews news_;
   LiveScan scan_;  // newest
@@ -70,7 +77,7 @@ class DashboardDesk {
 /// Null where the settings name no port, and, with a warning, where the page cannot be served: a daemon that cannot be
 /// watched still does its work.
 [[nodiscard]] std::unique_ptr<DashboardDesk> begun_dashboard(const Settings& settings, const StartMap& start,
-                                                             const Telemetry& telemetry, const ThingsBoard& things,
+                                                             const Telemetry& telemetry, const GoodsBoards& goods,
                                                              PageControl control,
                                                              const std::function<void(const std::string&)>& log,
                                                              const std::function<void(const std::string&)>& warn);

@@ -14,6 +14,7 @@
 
 #include "core/messages.hpp"
 #include "daemon/records/note_parts.hpp"
+#include "mapping/bays/bays.hpp"
 
 namespace deltamap::daemon {
 
@@ -33,7 +34,7 @@ struct MapOrder {
 /// What the delta thread reads, in order.
 using DeltaWork = std::variant<TrackedScan, MapOrder>;
 /// What the map thread reads, in order.
-using MapWork = std::variant<MapRequest, MapOrder>;
+using MapWork = std::variant<MapRequest, MapOrder, mapping::bays::BayEvent>;
 
 /// "undo of 7 by an operator", "rolled back to 3 …", "undo of thing 12 …": the reason of the revision that comes of it.
 [[nodiscard]] std::string reason_of(const MapOrder& order);

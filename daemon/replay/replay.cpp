@@ -116,10 +116,14 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
     return;
   }
   const std::optional<MapRequest> request = run_.look_for_changes(tracked);
-  if (!request) return;
-  if (const auto* set = std::get_if<ScanSet>(&*request); set != nullptr && !reaches_map(*set, tracked.scan.number))
-    return;
-  if (const auto result = run_.update_map(*request)) return keep_result(*result);
+  if (request) update_map(*request, tracked.scan.number);
+  for (const mapping::bays::BayEvent& event : run_.bay_events()) output_.told(event);
+  if (job_.watch.bays) job_.watch.bays(run_.bays(), tracked.scan.time);
+}
+
+void Replay::update_map(const MapRequest& request, std::uint32_t scan) {
+  if (const auto* set = std::get_if<ScanSet>(&request); set != nullptr && !reaches_map(*set, scan)) return;
+  if (const auto result = run_.update_map(request)) return keep_result(*result);
   output_.settled();
 }
 

@@ -4,6 +4,7 @@
 #include "core/files/grid_file.hpp"
 #include "daemon/maps/revision_keeper.hpp"
 #include "daemon/maps/stored_things.hpp"
+#include "daemon/outputs/bay_note.hpp"
 #include "daemon/outputs/thing_note.hpp"
 
 namespace deltamap::daemon {
@@ -16,7 +17,8 @@ FolderOutput::FolderOutput(const std::filesystem::path& folder, const OccupancyG
       trajectory_{folder / "trajectory.tum"},
       localization_log_{folder / "localization.csv"},
       changes_{folder / "changes.jsonl"},
-      told_things_{folder / "things.jsonl"} {
+      told_things_{folder / "things.jsonl"},
+      told_bays_{folder / "bays.jsonl"} {
   localization_log_.write(csv_header());
 }
 
@@ -33,6 +35,8 @@ void FolderOutput::changed(const MapStep::Result& result, std::string_view metho
   for (const auto& event : take_result(things_, result)) told_things_.write(json_line(event));
 }
 
+void FolderOutput::told(const mapping::bays::BayEvent& event) { told_bays_.write(json_line(event, things_.all())); }
+
 void FolderOutput::settled() { store_.set_provisional({}); }
 
 void FolderOutput::finish(const OccupancyGrid& newest) {
@@ -40,6 +44,7 @@ void FolderOutput::finish(const OccupancyGrid& newest) {
   localization_log_.flush();
   changes_.flush();
   told_things_.flush();
+  told_bays_.flush();
   write_grid(newest, folder_ / "map.yaml");
 }
 

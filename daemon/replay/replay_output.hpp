@@ -10,6 +10,7 @@
 #include "daemon/outputs/localization_log.hpp"
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/steps/map_step.hpp"
+#include "mapping/bays/bays.hpp"
 #include "mapping/store/map_store.hpp"
 #include "mapping/things/things.hpp"
 
@@ -24,6 +25,8 @@ class ReplayOutput {
   virtual void passed_over(const TrajectoryPoint& point) = 0;
   /// What became of a Δ-phase or of an operator's order. `method` as MapStep has it.
   virtual void changed(const MapStep::Result& result, std::string_view method) = 0;
+  /// A bay's state is another one.
+  virtual void told(const mapping::bays::BayEvent& event) = 0;
   /// No revision is provisional any more.
   virtual void settled() = 0;
   /// The end, with the newest map.
@@ -39,6 +42,7 @@ class FolderOutput : public ReplayOutput {
   void localized(const LocalizationRow& row) override;
   void passed_over(const TrajectoryPoint& point) override;
   void changed(const MapStep::Result& result, std::string_view method) override;
+  void told(const mapping::bays::BayEvent& event) override;
   void settled() override;
   void finish(const OccupancyGrid& newest) override;
 
@@ -50,6 +54,7 @@ class FolderOutput : public ReplayOutput {
   LineFile localization_log_;
   LineFile changes_;
   LineFile told_things_;
+  LineFile told_bays_;
   mapping::things::Things things_;
 };
 

@@ -14,6 +14,7 @@
 #include "daemon/outputs/localization_log.hpp"
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/settings/settings.hpp"
+#include "daemon/steps/bay_step.hpp"
 #include "localization/particles/particle_set.hpp"
 #include "mapping/store_scan.hpp"
 
@@ -33,6 +34,7 @@ struct ReplayedScan {
 struct ReplayWatch {
   std::function<void(const ReplayedScan&)> scan{};
   std::function<void(const MapRevision*, const ChangeNote&)> change{};  ///< the revision may be null: refused
+  std::function<void(const BayStep&, Timestamp)> bays{};                ///< after each scan that they have looked at
 };
 
 struct ReplayJob {

@@ -11,6 +11,7 @@ SequentialRun::SequentialRun(const Settings& settings, const StartMap& start, co
                              double map_delay_s, const RunDuties& duties)
     : localization_{settings, start},
       store_scan_{settings.mapping.store_scan, settings.seed, !start.provisional.empty()},
+      bays_{settings, start.map->geometry()},
       map_{settings, start},
       revisions_{journal, map_delay_s, start.revision},
       transients_{journal},
@@ -33,6 +34,7 @@ std::optional<MapRequest> SequentialRun::look_for_changes(const TrackedScan& tra
   const CpuTimer timer{cpu_.awareness_s, tells_times_};
   std::optional<MapRequest> request = store_scan_.observe(tracked);
   transients_.push(store_scan_.transients());
+  bay_events_ = bays_.observe(tracked, store_scan_.pose_holds(), request);
   return request;
 }
 

@@ -15,6 +15,7 @@
 #include "daemon/replay/revision_queue.hpp"
 #include "daemon/replay/transients_queue.hpp"
 #include "daemon/settings/settings.hpp"
+#include "daemon/steps/bay_step.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "daemon/steps/map_step.hpp"
 #include "mapping/store_scan.hpp"
@@ -39,6 +40,8 @@ class SequentialRun {
   [[nodiscard]] TrackedScan observe(Scan scan);
   /// What is to be handed to update_map().
   [[nodiscard]] std::optional<MapRequest> look_for_changes(const TrackedScan& tracked);
+  /// What the newest scan has told of the bays.
+  [[nodiscard]] const std::vector<mapping::bays::BayEvent>& bay_events() const { return bay_events_; }
   /// As MapStep::take().
   [[nodiscard]] std::optional<MapStep::Result> update_map(const MapRequest& request);
   [[nodiscard]] MapStep::Result obey(const SetCells& wanted);
@@ -47,6 +50,7 @@ class SequentialRun {
   [[nodiscard]] const LocalizationStep& localization() const { return localization_; }
   [[nodiscard]] const mapping::StoreScan& store_scan() const { return store_scan_; }
   [[nodiscard]] const MapStep& map() const { return map_; }
+  [[nodiscard]] const BayStep& bays() const { return bays_; }
   /// CPU time of this thread so far, by stage; 0 where the duties leave it out.
   [[nodiscard]] const StageCpu& cpu() const { return cpu_; }
 
@@ -56,6 +60,8 @@ class SequentialRun {
 
   LocalizationStep localization_;
   mapping::StoreScan store_scan_;
+  BayStep bays_;
+  std::vector<mapping::bays::BayEvent> bay_events_;
   MapStep map_;
   RevisionQueue revisions_;
   TransientsQueue transients_;

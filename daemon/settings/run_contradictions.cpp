@@ -58,6 +58,7 @@ std::vector<NamedFile> files_of(const Settings& settings, const std::string& fil
   };
   add_map("map.file", settings.map.file, false);
   add("dashboard.token_file", settings.dashboard.token_file, false);
+  add("bays.file", settings.bays.file, false);
   add("map.store", settings.map.store, true);
   if (const std::string& store = settings.map.store; !store.empty()) {
     const MemoryPlaces kept = memory_places(store);
@@ -70,6 +71,7 @@ std::vector<NamedFile> files_of(const Settings& settings, const std::string& fil
     add_kept("kept pose", kept.pose);
     add_kept("kept stability", kept.stability);
     add_kept("kept things", kept.things);
+    add_kept("kept bays", kept.bays);
     add_kept("saved map", kept.saved_map);
     add_kept("saved map's image", fs::path(kept.saved_map).replace_extension(".pgm"));
   }

@@ -78,6 +78,11 @@ struct IncidentSettings {
   double max_gigabytes = 2.0;     ///< of all of them
 };
 
+/// The places on the floor that goods are put on.
+struct BaysSettings {
+  std::string file;  ///< bays.yaml; empty: none are judged
+};
+
 /// What outlives the run, beside map.store; a replay does not look at it.
 struct MemorySettings {
   double pose_period_s = 5.0;  ///< between two writings of the pose; > 0
@@ -115,6 +120,7 @@ struct Settings {
   DashboardSettings dashboard;
   RecordingSettings recording;
   IncidentSettings incidents;
+  BaysSettings bays;
 };
 
 /// A recording of this run may begin in its midst: the localizer is asked now and then what it knows.

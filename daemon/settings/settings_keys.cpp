@@ -277,6 +277,9 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   add_dashboard(settings.dashboard, keys);
   add_recording(settings.recording, keys);
   add_incidents(settings.incidents, keys);
+  keys.push_back(
+      not_for_results(text_key("bays.file", settings.bays.file,
+                               "YAML file of the bays whose state is told, read again by a reload; empty: none")));
   return keys;
 }
 

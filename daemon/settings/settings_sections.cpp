@@ -35,6 +35,7 @@ const std::vector<SettingSection>& setting_sections() {
       {"dashboard", "the live page for browsers"},
       {"recording", "the recording of both ports"},
       {"incidents", "the minutes around each loss, refusal, safety stop, device fault and operator's mark"},
+      {"bays", "the places that goods are put on"},
   };
   return kSections;
 }

@@ -93,6 +93,10 @@ void require_sound_bays(const std::vector<Bay>& bays, const std::string& name) {
   require_sound_places(listed(bays), name);
 }
 
+void require_bays_on(const GridGeometry& map, const std::vector<Bay>& bays, const std::string& name) {
+  require_on_map(listed(bays), name, "bay", map);
+}
+
 std::string bays_as_yaml(const std::vector<Bay>& bays) { return places_as_yaml(listed(bays), kBayKeys); }
 
 }  // namespace deltamap::daemon

@@ -24,6 +24,8 @@ namespace deltamap::daemon {
 /// The same of bays that stand in no file yet; `name` stands for it.
 void require_sound_bays(const std::vector<mapping::bays::Bay>& bays, const std::string& name);
 
+void require_bays_on(const GridGeometry& map, const std::vector<mapping::bays::Bay>& bays, const std::string& name);
+
 [[nodiscard]] std::string bays_as_yaml(const std::vector<mapping::bays::Bay>& bays);
 
 }  // namespace deltamap::daemon

@@ -9,6 +9,7 @@ namespace deltamap::daemon {
 namespace {
 
 constexpr std::chrono::seconds kLookAgainAfter{1};
+constexpr double kBaysPeriod_s = 0.5;  // of their ages, where no state is another one
 
 const ScanSet* set_in(const MapWork& work) {
   const auto* request = std::get_if<MapRequest>(&work);
@@ -17,8 +18,12 @@ const ScanSet* set_in(const MapWork& work) {
 
 }  // namespace
 
-DeltaStage::DeltaStage(const Settings& settings, bool inherits, Wiring wiring)
-    : wiring_{std::move(wiring)}, store_scan_{settings.mapping.store_scan, settings.seed, inherits} {}
+DeltaStage::DeltaStage(const Settings& settings, const GridGeometry& map, bool inherits, Wiring wiring)
+    : wiring_{std::move(wiring)},
+      store_scan_{settings.mapping.store_scan, settings.seed, inherits},
+      bays_{settings, map} {
+  wiring_.bays.set(bays_.list());
+}
 
 void DeltaStage::run() {
   while (!wiring_.work.is_drained()) {
@@ -43,6 +48,7 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
   wiring_.telemetry.phase.set(awareness.phase);
   wiring_.telemetry.stored_scans.set(awareness.stored_scans);
   tell_of_gate();
+  std::vector<mapping::bays::BayEvent> bay_events = bays_.observe(tracked, store_scan_.pose_holds(), request);
   if (request) {
     if (const auto* set = std::get_if<ScanSet>(&*request)) {
       wiring_.telemetry.phases_closed.add(1);
@@ -50,7 +56,16 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
     }
     hand_over(*std::move(request));
   }
+  show_bays(std::move(bay_events), tracked.scan.time);
   if (wiring_.shows_scans()) show_scans();
+}
+
+/// Their changes go to the map thread behind the scan's set: things and bays are written in one order.
+void DeltaStage::show_bays(std::vector<mapping::bays::BayEvent> events, Timestamp now) {
+  for (mapping::bays::BayEvent& event : events) hand_over(std::move(event));
+  if (events.empty() && seconds(now - bays_shown_) < kBaysPeriod_s) return;
+  bays_shown_ = now;
+  wiring_.bays.set(bays_.list());
 }
 
 /// Shows the stored scans, with those of sets that still wait for the map thread.

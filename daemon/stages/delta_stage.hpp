@@ -14,6 +14,7 @@
 #include "daemon/records/recorder.hpp"
 #include "daemon/settings/settings.hpp"
 #include "daemon/stages/gate_watch.hpp"
+#include "daemon/steps/bay_step.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 #include "mapping/store_scan.hpp"
@@ -35,9 +36,10 @@ class DeltaStage {
     std::function<bool(const std::shared_ptr<const TransientObstacles>&)> show;
     std::function<bool()> shows_scans;                     ///< for the live page: somebody looks at the next
     std::function<void(mapping::StoredScans)> show_scans;  ///< never waits
+    BaysBoard& bays;                                       ///< for control and live page
   };
-  /// `inherits`: as StoreScan has it.
-  DeltaStage(const Settings& settings, bool inherits, Wiring wiring);
+  /// `inherits`: as StoreScan has it. Throws std::runtime_error where the bays' file is no good.
+  DeltaStage(const Settings& settings, const GridGeometry& map, bool inherits, Wiring wiring);
 
   /// The thread's work, until the channel is closed and empty.
   void run();
@@ -49,6 +51,7 @@ class DeltaStage {
 
  private:
   void look_for_changes(const TrackedScan& tracked);
+  void show_bays(std::vector<mapping::bays::BayEvent> events, Timestamp now);
   void hand_over(MapWork work);
   void offer_waiting();
   void offer_transients();
@@ -58,6 +61,8 @@ class DeltaStage {
 
   Wiring wiring_;
   mapping::StoreScan store_scan_;
+  BayStep bays_;
+  Timestamp bays_shown_;
   GateWatch gate_watch_;
   std::uint32_t transients_sent_ = 0;   // number of the newest snapshot that the localizer has been sent
   std::uint32_t transients_shown_ = 0;  // and that the page has

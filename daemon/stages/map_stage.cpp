@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/counted.hpp"
+#include "daemon/outputs/bay_note.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "drivers/port/port_clock.hpp"
 
@@ -64,6 +65,10 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
               wiring_.telemetry.outputs,
               wiring_.warn,
               port_clock_now()},
+      bays_{{.out = out, .kept = settings.bays.file.empty() ? "" : memory_places(settings.map.store).bays},
+            wiring_.telemetry.outputs,
+            wiring_.warn,
+            port_clock_now()},
       outputs_{{.out = out,
                 .store_file = settings.map.store,
                 .newest_file = settings.map.newest,
@@ -82,16 +87,20 @@ void MapStage::run(const std::deque<MapWork>& rest) {
     if (const auto work = wiring_.work.receive_within(kRetryPeriod)) take(*work);
     outputs_.retry(port_clock_now());
     things_.retry(port_clock_now());
+    bays_.retry(port_clock_now());
   }
   for (const MapWork& work : rest) take(work);
   outputs_.close(port_clock_now());
   things_.close(port_clock_now());
+  bays_.close(port_clock_now());
 }
 
 void MapStage::take(const MapWork& work) {
   if (const auto* request = std::get_if<MapRequest>(&work)) {
     if (const auto result = step_.take(*request)) return tell_and_hand_on(*result);
     outputs_.settle(port_clock_now());
+  } else if (const auto* event = std::get_if<mapping::bays::BayEvent>(&work)) {
+    tell_bay(*event);
   } else {
     obey(std::get<MapOrder>(work));
   }
@@ -161,6 +170,11 @@ void MapStage::tell_things(const MapStep::Result& result) {
     if (event.is_new) wiring_.log("thing " + std::to_string(event.thing.id) + ": " + words_of(event.thing));
   }
   if (!events.empty()) wiring_.things.set(things_.list());
+}
+
+void MapStage::tell_bay(const mapping::bays::BayEvent& event) {
+  wiring_.log(words_of(event));
+  bays_.take(event, wiring_.things.newest()->things, port_clock_now());
 }
 
 }  // namespace deltamap::daemon

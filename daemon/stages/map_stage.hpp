@@ -10,6 +10,7 @@
 #include "core/channel.hpp"
 #include "core/messages.hpp"
 #include "daemon/control/command.hpp"
+#include "daemon/maps/bays_keeper.hpp"
 #include "daemon/maps/map_outputs.hpp"
 #include "daemon/maps/things_keeper.hpp"
 #include "daemon/records/map_order.hpp"
@@ -55,12 +56,14 @@ class MapStage {
   [[nodiscard]] mapping::store::MapStore::Undoing cells_of(const MapOrder& order) const;
   void note(const SetCells& set);
   void tell_things(const MapStep::Result& result);
+  void tell_bay(const mapping::bays::BayEvent& event);
   /// To the localizer, the live page and the disk.
   void hand_on(const MapStep::Result& result);
 
   Wiring wiring_;
   MapStep step_;
   ThingsKeeper things_;
+  BaysKeeper bays_;
   MapOutputs outputs_;
   ChangeTally changes_;
   Pulse pulse_;

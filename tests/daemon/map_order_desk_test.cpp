@@ -122,6 +122,23 @@ TEST_F(MapOrderDeskTest, AnUndoOfAThingTakesItsCellsBackAndAReplayTellsTheSame) 
   EXPECT_EQ(test::content_of(folder_.path() / "replayed/things.jsonl"), kept);
 }
 
+TEST_F(MapOrderDeskTest, TellsOfBaysWhileItDrivesAndAReplayTellsTheSame) {
+  settings_.bays.file = folder_.path() / "bays.yaml";
+  std::ofstream{settings_.bays.file}
+      << "bays:\n  - {id: box, polygon: [[4.75, 4.75], [5.85, 4.75], [5.85, 5.65], [4.75, 5.65]]}\n";
+  (void)run_live(4ms, [&](const Pipeline&) {
+    EXPECT_EQ(asked({Kind::kBays, {}})["bays"][0]["state"], "unknown");
+    EXPECT_TRUE(comes_true([&] { return asked({Kind::kBays, {}})["bays"][0]["state"] == "full"; }));
+    EXPECT_EQ(exit_code({"bays"}), 0);
+  });
+  const std::string told = test::content_of(folder_.path() / "live/bays.jsonl");
+  EXPECT_NE(told.find("\"full\""), std::string::npos) << told;
+  EXPECT_EQ(test::content_of(memory_places(settings_.map.store).bays), told);
+  std::filesystem::remove(settings_.map.store);
+  EXPECT_EQ(replay("live.pcapng", "replayed").journal_differences, 0u);
+  EXPECT_EQ(test::content_of(folder_.path() / "replayed/bays.jsonl"), told);
+}
+
 TEST_F(MapOrderDeskTest, WhatWasUndoneDoesNotComeBackWithinTheDrive) {
   const std::uint32_t number = live_with_undo();
   const mapping::store::MapStore store{settings_.map.store};

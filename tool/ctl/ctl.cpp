@@ -12,6 +12,7 @@
 
 #include "daemon/control/request.hpp"
 #include "daemon/telemetry/log_level.hpp"
+#include "tool/ctl/bays_table.hpp"
 #include "tool/ctl/daemon_reply.hpp"
 #include "tool/ctl/status_table.hpp"
 #include "tool/ctl/status_watch.hpp"
@@ -61,6 +62,8 @@ void ask(const CtlOptions& options, const Request& request) {
     std::cout << status_table(reply.line);
   else if (request.kind == Kind::kThings)
     std::cout << things_table(reply.line);
+  else if (request.kind == Kind::kBays)
+    std::cout << bays_table(reply.line);
   else
     std::cout << reply.words << '\n';
 }
@@ -177,6 +180,7 @@ void add_ctl(CLI::App& app) {
   add_plain(map, options, "save", Kind::kSave, "write map and pose now");
   add_plain(ctl, options, "reload", Kind::kReload, "read the settings file again: take what can change, name the rest");
   add_plain(ctl, options, "things", Kind::kThings, "what has come, gone and moved");
+  add_plain(ctl, options, "bays", Kind::kBays, "what stands in the bays of the site");
   add_undo(ctl, options);
   add_map_order(ctl, options, "rollback", Kind::kRollBack, "make the map what revision K was; nothing is lost");
   add_log_level(ctl, options);

@@ -31,6 +31,7 @@ class Measuring : public daemon::ReplayOutput {
   void changed(const daemon::MapStep::Result& result, std::string_view /*method*/) override {
     ++(result.revision ? revisions_ : refused_);
   }
+  void told(const mapping::bays::BayEvent& /*event*/) override {}
   void settled() override {}
   void finish(const OccupancyGrid& newest) override {
     agreement_ = agreement(newest, ends_);

@@ -40,7 +40,7 @@ std::uint16_t free_port() {
 class DashboardDeskTest : public testing::Test {
  protected:
   void start() {
-    desk_ = std::make_unique<DashboardDesk>(settings_, start_, telemetry_, things_);
+    desk_ = std::make_unique<DashboardDesk>(settings_, start_, telemetry_, GoodsBoards{things_, bays_});
     thread_ = std::thread([this] { desk_->run(); });
   }
   ~DashboardDeskTest() override {
@@ -78,6 +78,7 @@ class DashboardDeskTest : public testing::Test {
   StartMap start_{.map = std::make_shared<const OccupancyGrid>(test::drawn_grid({"#..", "#..", "###"}, 0.5))};
   Telemetry telemetry_;
   ThingsBoard things_;
+  BaysBoard bays_;
   std::unique_ptr<DashboardDesk> desk_;
   std::thread thread_;
 };
@@ -188,6 +189,27 @@ TEST_F(DashboardDeskTest, TheHistoryListsWhatThisRunHasChanged) {
   ASSERT_EQ(history["changes"].size(), 1u);
   EXPECT_EQ(history["changes"][0]["acceptance"], 0.97);
   EXPECT_EQ(history["changes"][0]["accepted"], true);
+}
+
+TEST_F(DashboardDeskTest, TellsOfBaysAndTheirAge) {
+  start();
+  EXPECT_EQ(Json::parse(got("/api/bays").body)["bays"], Json::array());
+  const Polygon polygon{{1.0, 1.0}, {3.4, 1.0}, {3.4, 3.4}, {1.0, 3.4}};
+  mapping::bays::BayStatus status{.state = mapping::bays::BayState::kFull, .share = 0.934, .confidence = 0.8};
+  status.seen = drivers::port::port_clock_now() - std::chrono::seconds{40};
+  bays_.set(std::make_shared<const BayList>(BayList{{{.id = "B4", .polygon = polygon}}, {status}}));
+  mapping::things::Thing thing;
+  thing.id = 12;
+  thing.at = mapping::things::Outline{{2.2, 2.2}, 2.4, 2.4, 0.0, {}};
+  things_.set(std::make_shared<const ThingList>(ThingList{{thing}, 0, 0}));
+  const Json bay = Json::parse(got("/api/bays").body)["bays"][0];
+  EXPECT_EQ(bay["bay"], "B4");
+  EXPECT_EQ(bay["state"], "full");
+  EXPECT_DOUBLE_EQ(bay["share"].get<double>(), 0.93);
+  EXPECT_NEAR(bay["age_s"].get<double>(), 40.0, 5.0);
+  EXPECT_EQ(bay["since"], nullptr);
+  EXPECT_EQ(bay["things"], Json({12}));
+  EXPECT_EQ(bay["polygon_m"].size(), 4u);
 }
 
 TEST_F(DashboardDeskTest, TellsOfThings) {

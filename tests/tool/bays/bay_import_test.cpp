@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tool/bays/bay_import.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <stdexcept>
+
+#include "core/geometry/angle.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+const std::string kLif = R"({"metaInformation": {"lifVersion": "1.0.0", "creator": "x"}, "layouts": [{"layoutId": "L",
+  "nodes": [], "stations": [
+    {"stationId": "ST-1", "interactionNodeIds": ["n1"], "stationName": "Row B, bay 4",
+     "stationPosition": {"x": 9.2, "y": 9.2, "theta": 1.5707963}},
+    {"stationId": "ST-2", "interactionNodeIds": []}]}]})";
+const std::optional<BaySize> kSize = BaySize{2.4, 1.2};
+
+std::string lif_complaint(const std::string& text, const std::optional<BaySize>& size = kSize) {
+  try {
+    (void)bays_of_lif(text, "site.lif", size);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string csv_complaint(const std::string& text, const std::optional<BaySize>& size = kSize) {
+  try {
+    (void)bays_of_csv(text, "bays.csv", size);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BayImport, AStationOfLifBecomesABayAroundItsPosition) {
+  const ImportedBays bays = bays_of_lif(kLif, "site.lif", kSize);
+  ASSERT_EQ(bays.bays.size(), 1u);
+  EXPECT_EQ(bays.bays[0].id, "ST-1");
+  EXPECT_EQ(bays.bays[0].station_id, "ST-1");
+  EXPECT_EQ(bays.bays[0].name, "Row B, bay 4");
+  const PolygonBox box = bounding_box(bays.bays[0].polygon);
+  EXPECT_LT((box.low - Point2{8.6, 8.0}).norm(), 1e-6) << "along theta, which is north";
+  EXPECT_LT((box.high - Point2{9.8, 10.4}).norm(), 1e-6);
+}
+
+TEST(BayImport, AStationWithoutAPositionIsLeftOutAndTold) {
+  const ImportedBays bays = bays_of_lif(kLif, "site.lif", kSize);
+  ASSERT_EQ(bays.left_out.size(), 1u);
+  EXPECT_EQ(bays.left_out[0],
+            "site.lif: /layouts/0/stations/1: station 'ST-2' has no stationPosition: left out, draw its bay by hand");
+}
+
+TEST(BayImport, SaysInOneLineWhatIsWrongWithALif) {
+  EXPECT_EQ(lif_complaint(kLif, std::nullopt),
+            "site.lif: /layouts/0/stations/0: LIF has no size of stations: give --size ALONGxACROSS in metres");
+  std::string later = kLif;
+  later.replace(later.find("1.0.0"), 5, "2.0.0");
+  EXPECT_EQ(lif_complaint(later),
+            "site.lif: /metaInformation/lifVersion: is '2.0.0': only LIF 1 is known, export it as 1.0.0");
+  EXPECT_EQ(lif_complaint("{\n\"a\": }"), "site.lif: line 2: no JSON");
+  EXPECT_EQ(lif_complaint("{}"), "site.lif: /metaInformation/lifVersion: is missing: this is no LIF file");
+  EXPECT_EQ(lif_complaint(R"({"metaInformation": {"lifVersion": "1.0.0"}, "layouts": []})"),
+            "site.lif: /layouts: holds no stations");
+  EXPECT_EQ(lif_complaint(R"({"metaInformation": {"lifVersion": "1.0.0"}, "layouts": [{"stations": [{"stationId": "A",
+             "stationPosition": {"x": "1", "y": 2}}]}]})"),
+            "site.lif: /layouts/0/stations/0/stationPosition: needs the numbers x and y");
+}
+
+TEST(BayImport, ATableGivesMiddlesOrPolygons) {
+  const ImportedBays bays = bays_of_csv(
+      "id;name;x_m;y_m;heading_deg;along_m;across_m;polygon_m\r\n"
+      "A;\"Row \"\"A\"\"\";2;3;90;2.4;1.2;\r\n"
+      "\r\n"
+      "B;;;;;;;\"0 0; 2 0; 2 1.5\"\r\n",
+      "bays.csv", std::nullopt);
+  ASSERT_EQ(bays.bays.size(), 2u);
+  EXPECT_EQ(bays.bays[0].name, "Row \"A\"");
+  EXPECT_LT((bounding_box(bays.bays[0].polygon).low - Point2{1.4, 1.8}).norm(), 1e-9);
+  EXPECT_EQ(bays.bays[1].polygon, (Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.5}}));
+}
+
+TEST(BayImport, SaysInOneLineWhatIsWrongWithATable) {
+  EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1\n"), "bays.csv: line 2: has 2 cells, the first line 3");
+  EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1,zwei\n"),
+            "bays.csv: line 2: 'y_m' must be a number with a point, not 'zwei'");
+  EXPECT_EQ(csv_complaint("id,x_m,y_m\n,1,2\n"), "bays.csv: line 2: 'id' is empty");
+  EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1,2\n", std::nullopt),
+            "bays.csv: line 2: bay 'A' has no size: give along_m and across_m, or --size ALONGxACROSS in metres");
+  EXPECT_EQ(csv_complaint("id,x\nA,1\n"),
+            "bays.csv: line 1: nothing is called 'x' here: id, name, stationId, x_m, y_m, heading_deg, along_m, "
+            "across_m, polygon_m");
+  EXPECT_EQ(csv_complaint("id,polygon_m\nA,1 2\n"), "bays.csv: line 2: 'polygon_m' needs at least three corners");
+  EXPECT_EQ(csv_complaint(""), "bays.csv: is empty");
+}
+
+TEST(BayImport, ASizeIsTwoLengths) {
+  EXPECT_DOUBLE_EQ(bay_size_in("2.4x1.2").along_m, 2.4);
+  for (const char* wrong : {"2.4", "x1", "2x-1", "2x1x3", "axb", "nanx1"})
+    EXPECT_THROW((void)bay_size_in(wrong), std::runtime_error) << wrong;
+}
+
+}  // namespace
+}  // namespace deltamap::tool

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bays of a table, as a spreadsheet writes it: a comma or a semicolon between columns, quotes where a cell needs them.
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "core/geometry/angle.hpp"
+#include "tool/bays/bay_import.hpp"
+#include "tool/bays/rectangle.hpp"
+
+namespace deltamap::tool {
+namespace {
+
+using mapping::bays::Bay;
+
+const std::vector<std::string> kBayColumns{"id",          "name",    "stationId", "x_m",      "y_m",
+                                           "heading_deg", "along_m", "across_m",  "polygon_m"};
+
+struct TableRow {
+  std::string place;  // "bays.csv: line 3"
+  std::map<std::string, std::string> cells;
+
+  [[noreturn]] void refuse(const std::string& why) const { throw std::runtime_error(place + ": " + why); }
+  [[nodiscard]] std::string text(const std::string& column) const {
+    const auto found = cells.find(column);
+    return found == cells.end() ? "" : found->second;
+  }
+  [[nodiscard]] std::optional<double> number(const std::string& column) const {
+    const std::string told = text(column);
+    if (told.empty()) return std::nullopt;
+    const auto value = finite_number(told);
+    if (!value) refuse("'" + column + "' must be a number with a point, not '" + told + "'");
+    return value;
+  }
+};
+
+std::string trimmed(std::string text) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && is_blank(text.back())) text.pop_back();
+  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), is_blank));
+  return text;
+}
+
+std::vector<std::string> cells_of(const std::string& line, char separator) {
+  std::vector<std::string> cells(1);
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && is_quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      cells.back() += line[i++];
+    } else if (line[i] == '"') {
+      is_quoted = !is_quoted;
+    } else if (line[i] == separator && !is_quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  for (std::string& cell : cells) cell = trimmed(cell);
+  return cells;
+}
+
+std::vector<std::string> lines_in(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    lines.push_back(text.substr(from, end - from));
+    from = end + 1;
+  }
+  return lines;
+}
+
+/// "1 2; 3 2; 3 4"
+Polygon polygon_of(const TableRow& row, const std::string& told) {
+  Polygon polygon;
+  for (const std::string& corner : cells_of(told, ';')) {
+    const std::size_t gap = corner.find(' ');
+    const auto x_m = finite_number(corner.substr(0, gap));
+    const auto y_m = gap == std::string::npos ? std::nullopt : finite_number(trimmed(corner.substr(gap)));
+    if (!x_m || !y_m) row.refuse("'polygon_m' must be corners as 'x y; x y; x y', not '" + told + "'");
+    polygon.emplace_back(*x_m, *y_m);
+  }
+  if (polygon.size() < 3) row.refuse("'polygon_m' needs at least three corners");
+  return polygon;
+}
+
+Bay bay_of(const TableRow& row, const std::optional<BaySize>& size) {
+  Bay bay{.id = row.text("id"), .name = row.text("name"), .station_id = row.text("stationId"), .polygon = {}};
+  if (bay.id.empty()) row.refuse("'id' is empty");
+  if (const std::string told = row.text("polygon_m"); !told.empty()) {
+    bay.polygon = polygon_of(row, told);
+    return bay;
+  }
+  const auto x_m = row.number("x_m");
+  const auto y_m = row.number("y_m");
+  if (!x_m || !y_m) row.refuse("bay '" + bay.id + "' needs x_m and y_m, or polygon_m");
+  const auto along_m = row.number("along_m");
+  const auto across_m = row.number("across_m");
+  const bool has_size = along_m && across_m;
+  if (!has_size && !size)
+    row.refuse("bay '" + bay.id + "' has no size: give along_m and across_m, or --size ALONGxACROSS in metres");
+  const BaySize own = has_size ? BaySize{*along_m, *across_m} : *size;
+  if (!(own.along_m > 0.0 && own.across_m > 0.0)) row.refuse("bay '" + bay.id + "' needs sides longer than 0");
+  bay.polygon = rectangle_of({*x_m, *y_m, wrapped_angle(radians(row.number("heading_deg").value_or(0.0)))}, own);
+  return bay;
+}
+
+}  // namespace
+
+ImportedBays bays_of_csv(const std::string& text, const std::string& name, const std::optional<BaySize>& size) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::vector<std::string> lines = lines_in(text);
+  if (lines.empty()) throw std::runtime_error(name + ": is empty");
+  if (lines[0].starts_with(kByteOrderMark)) lines[0].erase(0, kByteOrderMark.size());
+  const char separator = lines[0].find(';') == std::string::npos ? ',' : ';';
+  const std::vector<std::string> columns = cells_of(lines[0], separator);
+  for (const std::string& column : columns) {
+    if (std::find(kBayColumns.begin(), kBayColumns.end(), column) == kBayColumns.end())
+      throw std::runtime_error(name + ": line 1: nothing is called '" + column + "' here: id, name, stationId, x_m, " +
+                               "y_m, heading_deg, along_m, across_m, polygon_m");
+  }
+  ImportedBays bays;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (trimmed(lines[i]).empty()) continue;
+    const std::vector<std::string> cells = cells_of(lines[i], separator);
+    TableRow row{name + ": line " + std::to_string(i + 1), {}};
+    if (cells.size() != columns.size())
+      row.refuse("has " + std::to_string(cells.size()) + " cells, the first line " + std::to_string(columns.size()));
+    for (std::size_t c = 0; c < columns.size(); ++c) row.cells[columns[c]] = cells[c];
+    bays.bays.push_back(bay_of(row, size));
+  }
+  return bays;
+}
+
+}  // namespace deltamap::tool
