@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of bays: what stands in each and how old that is, with outlines on the map. Asked for every two seconds; a run that
+// The table of bays: what stands in each and how old that is, with outlines on the map. Asked for every two seconds where there are any; a run that
 // is over has none.
 
 import { ink_of } from "./canvas.js";
@@ -7,6 +7,7 @@ import { explain } from "./glossary.js";
 import { clock, span_of } from "./time_text.js";
 
 const ASK_EVERY_MS = 2000;
+const ASK_WHERE_NONE_MS = 30000;
 const INK_OF = { full: "--red", partly: "--orange", empty: "--green", unknown: "--soft" };
 
 const by_id = (id) => document.getElementById(id);
@@ -18,18 +19,22 @@ export class Bays {
     this.model = model;
     this.on_pick = on_pick;
     this.on_news = on_news;
+    this.asked = -Infinity;  // ms
     model.bays = [];
     setInterval(() => this.ask(), ASK_EVERY_MS);
   }
 
   clear() {
+    this.asked = -Infinity;
     this.model.bays = [];
     this.model.picked_bay = null;
     by_id("bays-box").hidden = true;
   }
 
   async ask() {
-    if (this.model.run || !this.model.status || document.hidden) return;
+    const wait_ms = this.model.bays.length ? 0 : ASK_WHERE_NONE_MS;
+    if (this.model.run || !this.model.status || document.hidden || performance.now() < this.asked + wait_ms) return;
+    this.asked = performance.now();
     try {
       const answer = await fetch("/api/bays", { signal: AbortSignal.timeout(ASK_EVERY_MS) });
       if (!answer.ok) return;

@@ -2,6 +2,7 @@
 // What is drawn over the map: one layer a kind of thing, each with its sign in the legend, and a scale bar.
 
 import { beam_words, FITS, NOT_KNOWN, SHORT, THROUGH } from "./beams.js";
+import { draw_bays, sign_bay } from "./bays.js";
 import { draw_particles, draw_stored, draw_way, sign_particles, sign_stored, sign_way } from "./belief_layers.js";
 import { circle, ink_of } from "./canvas.js";
 import { explain } from "./glossary.js";
@@ -310,6 +311,8 @@ export const LAYERS = [
     keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink_of("--orange"))],
            ["seen gone", (c) => { c.strokeStyle = ink_of("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
   { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink_of("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
+  { id: "bays", label: "bays", is_of_now: true, draw: draw_bays,
+    keys: ["full", "partly", "empty", "unknown"].map((state) => [`bay ${state}`, (c) => sign_bay(c, state)]) },
   { id: "things", label: "things", is_of_now: true, draw: draw_things,
     keys: [["stands there, seen sides", (c) => sign_thing(c, "--red", [])], ["stands there, sides that nobody has seen", (c) => sign_thing(c, "--red", [2, 3])],
            ["stood there and has gone", (c) => sign_thing(c, "--blue", [6, 2])]] },

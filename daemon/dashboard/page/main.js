@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joins the live stream, the map, the charts and the panels.
 
+import { Bays, middle_of } from "./bays.js";
 import { add_changes, clear_changes, mark_picked } from "./changes.js";
 import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
@@ -127,6 +128,12 @@ function pick_thing(thing, is_asked) {
 }
 let may_command = false;
 const things = new Things(model, pick_thing);
+const bays = new Bays(model, (bay) => {
+  if (!bay) return view.draw_soon();
+  view.set_follow(false);
+  view.scale = Math.max(view.scale, 20);
+  view.show(...middle_of(bay));
+}, () => view.draw_soon());
 
 run.on_walk = (time) => {
   if (!history.is_open) return;
@@ -178,6 +185,7 @@ const on = {
     history.allow_undo(Boolean(hello.control));
     may_command = Boolean(hello.control);
     things.clear();
+    bays.clear();
     history.close();
     model.samples.length = model.changes.length = 0;  // the stream begins with the past
     model.particles = model.stored = [];

@@ -3,19 +3,12 @@
 // run that is over, whenever another second of it is shown.
 
 import { explain } from "./glossary.js";
-import { clock } from "./time_text.js";
+import { clock, span_of } from "./time_text.js";
 
 const ASK_EVERY_MS = 2000;
 const MOST_LISTED = 50;
 
 const by_id = (id) => document.getElementById(id);
-
-/// "3 min", since then.
-function age_of(time, now) {
-  const passed_s = Math.max(0, now - time);
-  if (passed_s < 90) return `${Math.round(passed_s)} s`;
-  return passed_s < 5400 ? `${Math.round(passed_s / 60)} min` : `${Math.round(passed_s / 3600)} h`;
-}
 
 const is_there = (thing) => thing.kind !== "taken back" && thing.kind !== "joined";
 export const outline_of = (thing) => thing.at ?? thing.from;
@@ -73,7 +66,7 @@ export class Things {
       return element;
     };
     const unseen = outline_of(thing).sides_seen.filter((seen) => !seen).length;
-    const time = part("time", "", `${age_of(thing.last_seen, now)} ago`);
+    const time = part("time", "", `${span_of(now - thing.last_seen)} ago`);
     time.dateTime = new Date(1000 * thing.last_seen).toISOString();
     const title = part("b", "", String(thing.thing)), what = part("span", "what", thing.words);
     button.append(title, what, time,
