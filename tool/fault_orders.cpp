@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "core/trimmed.hpp"
+
 namespace deltamap::tool {
 namespace {
 
@@ -15,13 +17,6 @@ constexpr std::size_t kLongestOrder = 1000;
 
 std::string told(const simulation::FaultOrder& order) {
   return "fault " + simulation::described(order) + ": " + std::string(order.fault->meaning) + '\n';
-}
-
-std::string trimmed(std::string text) {
-  constexpr const char* kBlank = " \t\r";
-  text.erase(0, std::min(text.find_first_not_of(kBlank), text.size()));
-  text.erase(text.find_last_not_of(kBlank) + 1);
-  return text;
 }
 
 std::string ended(const std::string& name, simulation::Simulation& simulation) {

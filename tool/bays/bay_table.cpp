@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/geometry/angle.hpp"
+#include "core/trimmed.hpp"
 #include "tool/bays/bay_import.hpp"
 #include "tool/bays/rectangle.hpp"
 
@@ -33,13 +34,6 @@ struct TableRow {
     return value;
   }
 };
-
-std::string trimmed(std::string text) {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && is_blank(text.back())) text.pop_back();
-  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), is_blank));
-  return text;
-}
 
 std::vector<std::string> cells_of(const std::string& line, char separator) {
   std::vector<std::string> cells(1);
