@@ -29,7 +29,7 @@ TEST(EvidencePhase, ShowsTheScansOfASetWhileItIsCollectedAndWhileItWaits) {
   EXPECT_GE(collected, 2u);
   EXPECT_LE(collected, 40u);
   EXPECT_GE(waiting, 2u);
-  drive.through(always(*drive.map), 10.0);
+  drive.through(always(*drive.map), 20.0);
   EXPECT_EQ(drive.store.stored(), StoredScans{}) << "nothing differs from the map any more";
 }
 
