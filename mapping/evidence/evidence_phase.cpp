@@ -196,11 +196,23 @@ bool EvidencePhase::is_large_enough(const std::vector<ProvenBlock>& region) cons
   });
 }
 
+/// Most of what is to be drawn lies where nothing was known.
+bool EvidencePhase::is_new_ground(const std::vector<ProvenBlock>& region) const {
+  if (region.front().question == votes::Question::kRemoved) return false;
+  std::vector<CellVerdict> drawn;
+  for (const ProvenBlock& proven : region) add_verdicts(proven.question, proven.block, drawn);
+  const auto unknown = std::count_if(drawn.begin(), drawn.end(), [this](const CellVerdict& verdict) {
+    return (*map_)[verdict.cell] == CellState::kUnknown;
+  });
+  return 2 * static_cast<std::size_t>(unknown) > drawn.size();
+}
+
 bool EvidencePhase::is_settled(const std::vector<ProvenBlock>& region) const {
   const auto [oldest, newest] = std::minmax_element(
       region.begin(), region.end(), [](const ProvenBlock& a, const ProvenBlock& b) { return a.since_ms < b.since_ms; });
-  return 1e-3 * (now_ms_ - newest->since_ms) >= params_.settle_s ||
-         1e-3 * (now_ms_ - oldest->since_ms) >= params_.most_wait_s;
+  const double unchanged_s = 1e-3 * (now_ms_ - newest->since_ms);
+  return unchanged_s >= params_.settle_s || 1e-3 * (now_ms_ - oldest->since_ms) >= params_.most_wait_s ||
+         (unchanged_s >= params_.draws_at_once_s && is_new_ground(region));
 }
 
 /// Something that this run itself has written is gone.

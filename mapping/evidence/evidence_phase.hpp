@@ -25,13 +25,14 @@
 namespace deltamap::mapping::evidence {
 
 struct EvidencePhaseParams {
-  double face_persistence_s = 1.5;      ///< votes on what does not only pass must span at least so long; >= 0
-  double least_votes = 3.0;             ///< keyframes that say so, worn votes not counted; > 0
-  double least_share = 0.8;             ///< of the votes on a block that say so; (0.5, 1]
-  int reach_blocks = 2;                 ///< proven blocks at most so far apart are one region; >= 1
-  std::uint32_t least_blocks = 3;       ///< a smaller region is too small and waits; >= 1
-  double settle_s = 2.0;                ///< a region is handed on when it has not grown for so long, …
-  double most_wait_s = 6.0;             ///< … or has waited so long
+  double face_persistence_s = 1.5;  ///< votes on what does not only pass must span at least so long; >= 0
+  double least_votes = 3.0;         ///< keyframes that say so, worn votes not counted; > 0
+  double least_share = 0.8;         ///< of the votes on a block that say so; (0.5, 1]
+  int reach_blocks = 2;             ///< proven blocks at most so far apart are one region; >= 1
+  std::uint32_t least_blocks = 3;   ///< a smaller region is too small and waits; >= 1
+  double draws_at_once_s = 0.2;     ///< new ground, which the pose may come to rest on, is drawn after so long; else
+  double settle_s = 2.0;            ///< a region is handed on when it has not grown for so long, …
+  double most_wait_s = 6.0;         ///< … or has waited so long
   std::uint32_t least_look_cells = 12;  ///< another look that changes fewer writes nothing, unless it is the last; >= 1
   double joining_votes = 2.0;       ///< blocks beside an added region with so many votes and the share are taken along
   double joining_gone_votes = 1.0;  ///< the same beside a removed one
@@ -78,6 +79,7 @@ class EvidencePhase {
   void cast(const votes::Votes& votes);
   [[nodiscard]] bool is_proven(votes::Question question, Cell block) const;
   [[nodiscard]] std::optional<ScanSet> settled_regions(Timestamp time);
+  [[nodiscard]] bool is_new_ground(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_settled(const std::vector<ProvenBlock>& region) const;
   [[nodiscard]] bool is_changed_this_run(const std::vector<ProvenBlock>& region) const;
   Handed hand_on(const std::vector<ProvenBlock>& region, std::vector<CellVerdict>& verdicts);

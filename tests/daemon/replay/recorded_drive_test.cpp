@@ -26,7 +26,7 @@ using test::content_of;
 class RecordedDriveTest : public testing::Test {
  protected:
   RecordedDriveTest() {
-    test::write_drive(folder_.path() / "drive.log", 20.0);
+    test::write_drive(folder_.path() / "drive.log", 30.0);
     (void)tool::import_carmen(folder_.path() / "drive.log", folder_.path() / "drive.pcapng", std::nullopt);
     write_grid(test::small_room(false), folder_.path() / "room.yaml");
   }

@@ -121,7 +121,7 @@ TEST_F(ReplayTest, TheReportNamesWhatReallyRan) {
 }
 
 TEST_F(ReplayTest, FindsTheSameChangesHoweverMuchUnknownSpaceLiesAroundTheMap) {
-  record_drive(24.0);
+  record_drive(34.0);
   EXPECT_EQ(error_of(job()), "");
   const OccupancyGrid changed = read_grid(folder_.path() / "out/map.yaml");
   const std::string trajectory = content_of(folder_.path() / "out/trajectory.tum");
