@@ -244,6 +244,16 @@ std::shared_ptr<LiveSettings> live_settings(const SettingsReading& reading, cons
   });
 }
 
+/// Another daemon's folder of incidents ends the start before anything is made. One that cannot be is told later, again
+/// and again, and ends nothing.
+void require_own_incidents(const Settings& settings) {
+  if (settings.incidents.folder.empty()) return;
+  try {
+    require_lockable_folder(settings.incidents.folder);
+  } catch (const std::system_error&) {
+  }
+}
+
 /// Reads and opens what the run begins from, makes the folders that it writes to, and says so.
 Pipeline::Options prepared(const SettingsReading& reading, const CommandLine& line, Console& console) {
   const Settings& settings = reading.settings;
@@ -254,6 +264,7 @@ Pipeline::Options prepared(const SettingsReading& reading, const CommandLine& li
   require_pose_on(first.geometry(), settings);
   if (const std::string doubt = doubt_of_pose(first, settings); !doubt.empty()) console.log(LogLevel::kWarn, doubt);
   options.start.map = std::make_shared<const OccupancyGrid>(first);
+  require_own_incidents(settings);
   make_state_folders(settings, line.config);
   if (!line.out.empty()) options.out = folder_to_write(line.out, settings);
   std::optional<OpenedStore> store;

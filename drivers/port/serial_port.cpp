@@ -96,15 +96,18 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   }
 
   /// The loop hears of the terminal, or of nothing that it does: asio is woken by every byte that comes, wanted or not.
-  void attach() {
-    if (!descriptor_.is_open()) descriptor_.assign(terminal_);
+  bool attach() {
+    error_code error;
+    if (!descriptor_.is_open()) descriptor_.assign(terminal_, error);
+    if (error) fail("the device cannot be listened to (" + error.message() + ")");
+    return !error;
   }
   void detach() {
     if (descriptor_.is_open()) (void)descriptor_.release();
   }
 
   void wait_for_input() {
-    attach();
+    if (!attach()) return;
     descriptor_.async_wait(asio::posix::stream_descriptor::wait_read,
                            [self = shared_from_this()](const error_code& error) {
                              if (error || self->closed_ || self->failed_) return;
@@ -191,7 +194,7 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   }
 
   void wait_for_output() {
-    attach();
+    if (!attach()) return;
     descriptor_.async_wait(asio::posix::stream_descriptor::wait_write,
                            [self = shared_from_this()](const error_code& error) {
                              if (!error) self->work();

@@ -56,7 +56,7 @@ as=()
 chmod 755 "$out/forbidden" "$out/mine"
 
 mkdir "$out/run"
-"$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --out "$out/run" 2>"$out/first.log" &
+"$bin/deltamapd" "${plain[@]}" --set map.store="$out/store.sqlite" --set recording.file="$out/bytes.pcapng" --set incidents.folder="$out/incidents" --out "$out/run" 2>"$out/first.log" &
 daemon=$!
 await "the first daemon is not up" said ' robot: .*no_robot' "$out/first.log"
 holder="is in use by deltamapd (pid "
@@ -64,6 +64,8 @@ size=$(stat -c %i "$out/bytes.pcapng")
 expect 1 "run: $holder" --out "$out/run"
 expect 1 "store.sqlite: $holder" --set map.store="$out/store.sqlite"
 expect 1 "bytes.pcapng: $holder" --set recording.file="$out/bytes.pcapng"
+expect 1 "incidents: $holder" --set incidents.folder="$out/incidents" --set map.store="$out/another.sqlite"
+[[ ! -e $out/another.sqlite ]] || fail "a daemon that was refused has left a store behind"
 [[ $(stat -c %i "$out/bytes.pcapng") == "$size" && ! -e $out/bytes.previous.pcapng ]] || fail "the recording was touched"
 "$bin/deltamap" map history "$out/store.sqlite" list >/dev/null || fail "a store in use cannot be read"
 code=0
@@ -84,4 +86,4 @@ daemon=
 grep -q "warning map store set aside as $out/store.sqlite.set-aside-1: " "$out/second.log" || fail "no warning"
 [[ $(stat -c %s "$out/store.sqlite.set-aside-1") == 20000 ]] || fail "the damaged store was not kept"
 [[ ! -e $out/run/.lock && ! -e $out/store.sqlite.lock && ! -e $out/bytes.pcapng.lock ]] || fail "locks are left behind"
-echo "start: 18 mistakes end with exit code 2, 4 conflicts with 1"
+echo "start: 18 mistakes end with exit code 2, 5 conflicts with 1"

@@ -9,6 +9,8 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "core/utc_text.hpp"
 #include "daemon/incidents/incident_list.hpp"
 #include "daemon/replay/incident_replay.hpp"
+#include "daemon/settings/reader/nearest_key.hpp"
 #include "tool/draft.hpp"
 #include "tool/incident/tar_file.hpp"
 #include "tool/progress.hpp"
@@ -39,11 +42,25 @@ struct IncidentOptions {
   bool as_json = false;
 };
 
-/// A name alone is one of those in the folder.
+[[noreturn]] void refuse_name(const IncidentOptions& options, const fs::path& named) {
+  std::vector<std::string> names;
+  for (const daemon::StoredIncident& stored : daemon::incidents_in(options.folder)) {
+    names.push_back(stored.incident.name);
+  }
+  const auto nearest = daemon::nearest_of(names, named.string());
+  const std::string hint = nearest         ? "nearest name " + *nearest
+                           : names.empty() ? "it holds no incident"
+                                           : "`deltamap incident list` names its " + counted(names.size(), "incident");
+  throw std::runtime_error(options.folder.string() + ": holds no incident " + named.string() + " (" + hint + ")");
+}
+
+/// A folder, or the name of one of those in --folder.
 fs::path folder_of(const IncidentOptions& options, const fs::path& named) {
   std::error_code error;
-  const bool is_name = !named.has_parent_path() && !fs::exists(named, error);
-  return is_name ? options.folder / named : named;
+  const fs::path plain = named.has_filename() ? named : named.parent_path();  // "NAME/", as shells complete it
+  if (fs::exists(plain, error)) return plain;
+  if (fs::exists(options.folder / plain, error)) return options.folder / plain;
+  refuse_name(options, plain);
 }
 
 void list(const IncidentOptions& options) {
@@ -104,9 +121,15 @@ void replay(const IncidentOptions& options) {
 
 void pack(const IncidentOptions& options) {
   std::vector<fs::path> folders;
+  std::set<fs::path> names;  // within the file
   for (const fs::path& named : options.incidents) {
-    folders.push_back(folder_of(options, named));
-    (void)daemon::read_incident(folders.back());
+    const fs::path folder = fs::weakly_canonical(folder_of(options, named));
+    (void)daemon::read_incident(folder);
+    if (!names.insert(folder.filename()).second) {
+      throw std::runtime_error(folder.string() + ": " + folder.filename().string() +
+                               " is named twice: in one file its parts would lie over each other");
+    }
+    folders.push_back(folder);
   }
   const fs::path file = !options.out.empty() ? options.out : fs::path(folders.front().filename().string() + ".tar");
   Draft draft{file};

@@ -44,6 +44,9 @@ std::filesystem::path store_in(const std::string& source) {
 /// Of the first map that is given, else of that which was used last.
 MapStore opened(const ThingsOptions& options) {
   const std::filesystem::path file = store_in(options.source);
+  std::error_code error;
+  if (std::filesystem::file_size(file, error) == 0 && !error)
+    throw std::runtime_error(file.string() + ": is empty: no map store");
   MapStore store = options.map.empty() ? MapStore::to_read(file) : MapStore::in_memory(file, read_grid(options.map));
   if (!store.damage().empty()) std::cerr << "deltamap: " << store.damage() << "; the file is left as it is\n";
   if (const std::string others = options.map.empty() ? "" : daemon::words_of_others(store); !others.empty()) {

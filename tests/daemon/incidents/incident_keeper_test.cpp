@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Incidents of a daemon that drives in virtual time: what is kept, and what a replay makes of it.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
 
 #include <fstream>
 
@@ -175,6 +178,44 @@ TEST_F(IncidentKeeperTest, AFolderThatCannotBeIsToldAndAMarkIsRefusedUntilItCan)
   ASSERT_EQ(kept().size(), 1u);
   EXPECT_TRUE(kept().front().incident.begins_in_mid_run);
   drive(32.0);
+  EXPECT_GT(replay(kept().front(), "again").scans.localized, 300u);
+}
+
+/// As a full disk: no file grows beyond some bytes.
+class NoRoom {
+ public:
+  NoRoom() {
+    before_ = std::signal(SIGXFSZ, SIG_IGN);
+    (void)::getrlimit(RLIMIT_FSIZE, &limit_);
+    rlimit small = limit_;
+    small.rlim_cur = 64;
+    (void)::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~NoRoom() {
+    (void)::setrlimit(RLIMIT_FSIZE, &limit_);
+    (void)std::signal(SIGXFSZ, before_);
+  }
+  NoRoom(const NoRoom&) = delete;
+  NoRoom& operator=(const NoRoom&) = delete;
+
+ private:
+  rlimit limit_{};
+  void (*before_)(int) = SIG_DFL;
+};
+
+TEST_F(IncidentKeeperTest, ADiskThatIsFullAtTheStartIsBorneAndWhatComesLaterReplays) {
+  {
+    const NoRoom full;
+    start();
+    drive(5.0);
+    EXPECT_FALSE(mark("").done);
+  }
+  ASSERT_FALSE(lines_.empty());
+  EXPECT_TRUE(lines_.front().starts_with("saving pauses: incidents: ")) << lines_.front();
+  drive(20.0);
+  EXPECT_TRUE(mark("room again").done);
+  drive(32.0);
+  ASSERT_EQ(kept().size(), 1u);
   EXPECT_GT(replay(kept().front(), "again").scans.localized, 300u);
 }
 

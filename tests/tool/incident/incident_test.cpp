@@ -68,6 +68,40 @@ TEST_F(IncidentTool, PacksOneFileThatTarReads) {
   EXPECT_EQ(daemon::read_incident(fs::path(out) / name()).events.size(), 1u);
 }
 
+TEST_F(IncidentTool, PacksNoneTwiceAndNoneOverAnotherOfItsName) {
+  const std::string tar = folder_.path() / "sent.tar";
+  const auto twice = run_deltamap({"incident", "--folder", folder(), "pack", name(), name() + "/", "--out", tar});
+  EXPECT_EQ(twice.exit_code, 1);
+  EXPECT_NE(twice.errors.find(name() + " is named twice"), std::string::npos) << twice.errors;
+  const fs::path copy = folder_.path() / "elsewhere" / name();
+  fs::create_directories(copy.parent_path());
+  fs::copy(stored_.folder, copy);
+  const auto both = run_deltamap({"incident", "pack", stored_.folder.string(), copy.string(), "--out", tar});
+  EXPECT_EQ(both.exit_code, 1);
+  EXPECT_NE(both.errors.find("named twice"), std::string::npos) << both.errors;
+  EXPECT_FALSE(fs::exists(tar));
+}
+
+TEST_F(IncidentTool, TakesRelativeFoldersAndNamesWithASlash) {
+  const fs::path here = fs::current_path();
+  fs::current_path(folder_.path());
+  const auto shown = run_deltamap({"incident", "--folder", "incidents", "show", name() + "/"});
+  const auto packed = run_deltamap({"incident", "--folder", "incidents", "pack", name() + "/"});
+  fs::current_path(here);
+  EXPECT_EQ(shown.exit_code, 0) << shown.errors;
+  EXPECT_EQ(packed.exit_code, 0) << packed.errors;
+  EXPECT_TRUE(fs::exists(folder_.path() / (name() + ".tar")));
+}
+
+TEST_F(IncidentTool, NamesTheNearestOfAMisspeltName) {
+  std::string misspelt = name();
+  misspelt.back() = 'x';
+  const auto run = run_deltamap({"incident", "--folder", folder(), "show", misspelt});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.errors.find("holds no incident " + misspelt + " (nearest name " + name() + ")"), std::string::npos)
+      << run.errors;
+}
+
 TEST_F(IncidentTool, PinsAndUnpins) {
   EXPECT_EQ(run_deltamap({"incident", "--folder", folder(), "pin", name()}).exit_code, 0);
   EXPECT_TRUE(kept().front().is_pinned);
@@ -78,7 +112,8 @@ TEST_F(IncidentTool, PinsAndUnpins) {
 TEST_F(IncidentTool, WhatIsNoIncidentIsNamed) {
   const auto none = run_deltamap({"incident", "--folder", folder(), "show", "elsewhere"});
   EXPECT_EQ(none.exit_code, 1);
-  EXPECT_EQ(none.errors, "deltamap: " + folder() + "/elsewhere: is no incident: no incident.json\n");
+  EXPECT_EQ(none.errors, "deltamap: " + folder() +
+                             ": holds no incident elsewhere (`deltamap incident list` names its 1 incident)\n");
   EXPECT_EQ(run_deltamap({"incident", "pack", folder()}).errors,
             "deltamap: " + folder() + ": is no incident: no incident.json\n");
   EXPECT_EQ(run_deltamap({"incident", "list", folder() + "/none"}).errors,

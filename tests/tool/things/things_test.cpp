@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -103,6 +105,15 @@ TEST_F(ThingsCommand, WithoutRevisionsThereIsNothingToTell) {
   const ToolRun run = things({empty});
   EXPECT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_NE(run.output.find("0 things; 0 changed cells belong to none"), std::string::npos) << run.output;
+}
+
+TEST_F(ThingsCommand, AnEmptyFileIsNoStoreWithAndWithoutAMap) {
+  const std::string nothing = (folder.path() / "nothing.sqlite").string();
+  std::ofstream{nothing};
+  for (const ToolRun& run : {things({nothing}), things({nothing, "--map", map})}) {
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.errors.find("nothing.sqlite: is empty"), std::string::npos) << run.errors;
+  }
 }
 
 TEST_F(ThingsCommand, AFolderWithoutAStoreIsRefused) {
