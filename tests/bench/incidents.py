@@ -7,9 +7,11 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from project import ROOT, measure_a_section, run
 
 BIN = ROOT / "build/release/bin"
