@@ -24,7 +24,8 @@ PARTS = {
     "port": ["drivers/port/byte_log_reader.cpp", "drivers/port/byte_record.cpp", "drivers/port/log_audit.cpp", "drivers/port/packet_seal.cpp", "drivers/port/pcapng_*.cpp"],
     "import": ["tool/import/bag_file.cpp", "tool/import/mcap_file.cpp", "tool/import/ros_messages.cpp", "tool/import/unpacked.cpp"],
     "settings": ["daemon/settings/settings*.cpp", "daemon/settings/lost_keys.cpp", "daemon/settings/former_keys.cpp", "daemon/settings/run_contradictions.cpp",
-                 "daemon/settings/reader/*.cpp"],
+                 "daemon/settings/memory_places.cpp", "daemon/settings/reader/*.cpp"],
+    "rules": ["daemon/dashboard/access.cpp", "navigation/fan.cpp"],
     "control": ["daemon/control/request.cpp"],
 }
 TARGETS = {
@@ -37,7 +38,7 @@ TARGETS = {
     "bag": ["import", "core"],
     "mcap": ["import", "core"],
     "map": ["core"],
-    "config": ["settings", "pioneer", "lms200", "drivers", "core"],
+    "config": ["settings", "rules", "pioneer", "lms200", "drivers", "core"],
     "control": ["control", "core"],
 }
 LIBRARIES = ["-lyaml-cpp", "-lpng", "-lbz2", "-llz4", "-lzstd"]
@@ -53,6 +54,7 @@ SEEDS = {
 
 def compiled(source, target, *more):
     newest = max(file.stat().st_mtime for folder in ("core", "drivers", "tool/import", "daemon/settings", "daemon/control", "tests/fuzz") for file in (ROOT / folder).rglob("*.?pp"))
+    newest = max(newest, source.stat().st_mtime)
     if not target.exists() or target.stat().st_mtime < newest:
         done = subprocess.run([str(word) for word in [*FLAGS, *more, source, "-o", target]], capture_output=True, text=True)
         if done.returncode:
