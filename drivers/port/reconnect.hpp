@@ -13,7 +13,7 @@
 namespace deltamap::drivers::port {
 
 struct ReconnectParams {
-  double first_pause_s = 0.2;    ///< after the first failure, and whenever the port had opened; > 0
+  double first_pause_s = 0.5;    ///< after the first failure, and whenever the port had opened; > 0
   double growth = 2.0;           ///< of the pause from try to try; >= 1
   double longest_pause_s = 1.0;  ///< >= first_pause_s; looking for a device costs little, waiting for it much
 };
