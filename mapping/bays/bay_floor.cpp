@@ -23,9 +23,7 @@ constexpr std::int8_t kFree = -2;
 constexpr std::int8_t kTaken = 4;  // from surely free on 1.4 s of looks: a person walks on
 constexpr std::int8_t kSurelyTaken = 6;
 constexpr std::uint8_t kShadowLooks = 2;
-constexpr double kBody_m = 0.9;               // across: no person, and no two beside each other
-constexpr double kSmallBody_m = 0.35;         // across: counts where it stays
-constexpr std::uint32_t kSmallBody_ds = 300;  // so long: people stand for less
+constexpr double kBody_m = 1.0;  // across: no person, and no two beside each other
 constexpr std::uint32_t kMostWindow_ds = 100;
 
 enum Mark : std::uint8_t { kWentThrough = 1, kEnded = 2, kBehindBody = 4 };
@@ -244,19 +242,13 @@ BayFloor::Cluster BayFloor::cluster_from(int start) {
   return cluster;
 }
 
-/// Ends of beams that touch each other are one body, where it is too large for a person, or stays.
-void BayFloor::find_bodies(std::uint32_t time_ds) {
+/// Ends of beams that touch each other are one body, where it is too large for a person.
+void BayFloor::find_bodies() {
   for (FloorCell& cell : cells_) cell.is_body = cell.is_gathered = false;
   for (int start = 0; start < columns_ * rows_; ++start) {
     const Cluster cluster = cluster_from(start);
-    if (cluster.count == 0) continue;
-    std::uint32_t since_ds = time_ds;
-    for (std::size_t i = 0; i < cluster.count; ++i)
-      since_ds = std::min(since_ds, cells_[static_cast<std::size_t>(cluster.members[i])].since_ds);
-    const double across_m = cluster.across_m(edge_m_);
-    const bool stays = across_m >= kSmallBody_m && time_ds - since_ds >= kSmallBody_ds;
-    for (std::size_t i = 0; i < cluster.count; ++i)
-      cells_[static_cast<std::size_t>(cluster.members[i])].is_body = stays || across_m >= kBody_m;
+    if (cluster.count == 0 || cluster.across_m(edge_m_) < kBody_m) continue;
+    for (std::size_t i = 0; i < cluster.count; ++i) cells_[static_cast<std::size_t>(cluster.members[i])].is_body = true;
   }
 }
 
@@ -267,7 +259,7 @@ void BayFloor::look(const TrackedScan& tracked, std::size_t first, std::size_t l
     mark_beam(in_bay(tracked.rays[i].origin), in_bay(tracked.rays[i].end));
   }
   take_marks(time_ds);
-  find_bodies(time_ds);
+  find_bodies();
 }
 
 bool BayFloor::is_known(const FloorCell& cell, std::uint32_t time_ds, std::uint32_t window_ds) const {
@@ -280,6 +272,8 @@ FloorCounts BayFloor::counts(std::uint32_t time_ds, std::uint32_t window_ds) con
   counts.cells = core_cells_;
   for (const FloorCell& cell : cells_) {
     counts.body = counts.body || cell.is_body;
+    const bool is_recent = cell.seen_ds > 0 && time_ds - cell.seen_ds <= window_ds;
+    counts.small += cell.is_core && is_recent && cell.evidence >= kTaken && !cell.is_body ? 1 : 0;
     if (!is_known(cell, time_ds, window_ds)) continue;
     if (cell.evidence <= kFree)
       ++counts.free;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The floor of one bay in cells, and what the beams of the last looks say of each: beams went through it, ended in it,
 // or it lies behind a face that stands. A body that passes leaves nothing behind: a cell changes its mind by several
-// looks, and what is as small as a person counts only where it stays.
+// looks, and what is as small as a person is no load.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,7 @@ struct FloorCounts {
   int free = 0;       ///< beams went through
   int taken = 0;      ///< beams ended there, at a body
   int shadowed = 0;   ///< behind a body, and never seen free since it stands
+  int small = 0;      ///< beams ended there, at what may be a person
   bool body = false;  ///< one stands there, or on the rim
 
   [[nodiscard]] int known() const { return free + taken + shadowed; }
@@ -61,7 +62,7 @@ class BayFloor {
   void take_marks(std::uint32_t time_ds);
   /// Of no cells where no beam ends there, or it belongs to another already.
   [[nodiscard]] Cluster cluster_from(int start);
-  void find_bodies(std::uint32_t time_ds);
+  void find_bodies();
   [[nodiscard]] bool is_known(const FloorCell& cell, std::uint32_t time_ds, std::uint32_t window_ds) const;
 
   Pose2 bay_from_map_;

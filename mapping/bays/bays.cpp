@@ -18,7 +18,7 @@ constexpr std::uint32_t kWindow_ds = 100;  // what was seen earlier is of anothe
 constexpr double kBreak_s = 2.0;           // without a look: a candidate begins anew
 constexpr int kLeastLooks = 4;
 constexpr double kLasts_s = 0.8;
-constexpr double kPartlyLasts_s = 2.0;  // a full bay is partly seen at first
+constexpr double kPartlyLasts_s = 1.4;  // a full bay is partly seen at first
 constexpr double kDoubtLasts_s = 3.0;
 
 /// The beams of a scan that may meet a circle: [first, last).
@@ -60,6 +60,22 @@ std::string_view name_of(BayState state) {
 
 Bays::Bays(std::vector<Bay> bays) : bays_{std::move(bays)}, statuses_(bays_.size()) {
   for (const Bay& bay : bays_) watches_.push_back({.floor = BayFloor{bay.polygon}});
+}
+
+void Bays::set(std::vector<Bay> bays) {
+  Bays others{std::move(bays)};
+  for (std::size_t i = 0; i < others.bays_.size(); ++i) {
+    const auto same = std::find_if(bays_.begin(), bays_.end(), [&](const Bay& bay) {
+      return bay.id == others.bays_[i].id && bay.polygon == others.bays_[i].polygon;
+    });
+    if (same == bays_.end()) continue;
+    const auto place = static_cast<std::size_t>(same - bays_.begin());
+    others.statuses_[i] = statuses_[place];
+    others.watches_[i] = watches_[place];
+  }
+  others.began_ = began_;
+  others.looked_ = looked_;
+  *this = std::move(others);
 }
 
 std::uint32_t Bays::tenths(Timestamp time) const {

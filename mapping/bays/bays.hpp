@@ -24,6 +24,9 @@ class Bays {
  public:
   explicit Bays(std::vector<Bay> bays);
 
+  /// Other bays from now on; of those that are as they were all that is known is kept.
+  void set(std::vector<Bay> bays);
+
   /// Every scan in order. `pose_holds`: sure enough to judge by.
   std::vector<BayEvent> observe(const TrackedScan& tracked, bool pose_holds);
   /// The pose has been wrong since then: what was seen with it is unknown.

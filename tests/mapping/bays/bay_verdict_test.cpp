@@ -12,7 +12,7 @@ TEST(BayVerdict, FreeFloorIsEmptyWhereThreeQuartersWereSeen) {
 }
 
 TEST(BayVerdict, AFaceAndTheShadowBehindItAreFull) {
-  EXPECT_EQ(shown_state({.cells = 100, .free = 0, .taken = 10, .shadowed = 70, .body = true}, BayState::kUnknown),
+  EXPECT_EQ(shown_state({.cells = 100, .free = 5, .taken = 10, .shadowed = 80, .body = true}, BayState::kUnknown),
             BayState::kFull);
   EXPECT_EQ(shown_state({.cells = 100, .free = 0, .taken = 10, .shadowed = 50, .body = true}, BayState::kUnknown),
             std::nullopt)
@@ -20,9 +20,13 @@ TEST(BayVerdict, AFaceAndTheShadowBehindItAreFull) {
 }
 
 TEST(BayVerdict, OnTheBorderOfTwoStatesTheOldOneStays) {
-  const FloorCounts half{.cells = 100, .free = 40, .taken = 10, .shadowed = 45, .body = true};
-  EXPECT_EQ(shown_state(half, BayState::kFull), BayState::kFull);
-  EXPECT_EQ(shown_state(half, BayState::kPartly), BayState::kPartly);
+  const FloorCounts most{.cells = 100, .free = 12, .taken = 10, .shadowed = 70, .body = true};
+  EXPECT_EQ(shown_state(most, BayState::kFull), BayState::kFull);
+  EXPECT_EQ(shown_state(most, BayState::kPartly), BayState::kPartly);
+}
+
+TEST(BayVerdict, WhereSomebodyStandsNothingNewIsTold) {
+  EXPECT_EQ(shown_state({.cells = 100, .free = 90, .small = 3}, BayState::kUnknown), std::nullopt);
 }
 
 TEST(BayVerdict, AStateIsContradictedByMuchThatItCannotShow) {

@@ -137,6 +137,20 @@ TEST_F(SeenBays, WhatAWrongPoseHasSeenIsForgotten) {
   EXPECT_EQ(status().state, BayState::kEmpty);
 }
 
+TEST_F(SeenBays, OfBaysThatStayAsTheyWereAllThatIsKnownIsKept) {
+  look(kBefore, 3.0);
+  const BayStatus known = status();
+  Bay renamed = bays.bays()[0];
+  renamed.name = "Row B";
+  Bay moved = renamed;
+  moved.id = "B5";
+  moved.polygon = square(kBay + Point2{3.0, 0.0}, kSide_m);
+  bays.set({moved, renamed});
+  EXPECT_EQ(status(0), BayStatus{});
+  EXPECT_EQ(status(1), known);
+  EXPECT_EQ(bays.bays()[1].name, "Row B");
+}
+
 TEST_F(SeenBays, TheSameScansTellTheSame) {
   rebuild({{kBay, {1.2, 2.4}}});
   const auto first = look(kAside, 5.0);
