@@ -57,6 +57,10 @@ StoreScan::~StoreScan() = default;
 StoreScan::StoreScan(StoreScan&&) noexcept = default;
 StoreScan& StoreScan::operator=(StoreScan&&) noexcept = default;
 
+void StoreScan::set_zones(const Zones& zones) {
+  state_->evidence.leave_unwritten(ZonedGround{zones, {ZoneKind::kFrozen, ZoneKind::kTemporary}});
+}
+
 bool StoreScan::pose_holds() const { return state_->pose_holds; }
 
 const Awareness& StoreScan::awareness() const { return state_->awareness; }

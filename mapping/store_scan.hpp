@@ -10,6 +10,7 @@
 
 #include "core/messages.hpp"
 #include "core/transient_obstacles.hpp"
+#include "core/zones.hpp"
 #include "mapping/evidence/evidence_phase.hpp"
 #include "mapping/gate/gated_sets.hpp"
 #include "mapping/paper/delta_phase.hpp"
@@ -56,6 +57,8 @@ class StoreScan {
   [[nodiscard]] std::optional<MapRequest> observe(const TrackedScan& tracked);
 
   [[nodiscard]] const Awareness& awareness() const;
+  /// From the next scan on: what differs within frozen and temporary zones is transient (evidence).
+  void set_zones(const Zones& zones);
   /// The newest scan's pose is sure enough to judge by what it saw.
   [[nodiscard]] bool pose_holds() const;
   [[nodiscard]] StoredScans stored() const;

@@ -95,6 +95,21 @@ const votes::Votes& EvidencePhase::without_known_ground(const votes::Votes& vote
   return left;
 }
 
+bool EvidencePhase::is_unwritten(Cell cell) const { return unwritten_.covers(map_->geometry().centre_of(cell)); }
+
+/// A block counts by its middle; of one on the border single cells are left out when it is written.
+const votes::Votes& EvidencePhase::without_unwritten_ground(const votes::Votes& votes) {
+  if (unwritten_.empty()) return votes;
+  votes::Votes& left = votes_on_written_ground_;
+  left = votes;
+  const auto is_left_out = [this](std::uint32_t index) {
+    return unwritten_.covers(layer_.blocks().centre_of(layer_.blocks().cell_of(index)));
+  };
+  for (votes::Blocks* blocks : {&left.yes[0], &left.yes[1], &left.no[0], &left.no[1], &left.ends})
+    std::erase_if(*blocks, is_left_out);
+  return left;
+}
+
 bool EvidencePhase::was_known(Cell cell) const {
   return begun_with_->at(begun_with_->geometry().cell_at(map_->geometry().centre_of(cell))) != CellState::kUnknown;
 }
@@ -163,6 +178,7 @@ void EvidencePhase::begin_anew(votes::Question question, Cell block) {
 }
 
 std::optional<ScanSet> EvidencePhase::with_scans(ScanSet set, const votes::Blocks& blocks, std::uint32_t first_ms) {
+  if (!unwritten_.empty()) std::erase_if(set.verdicts, [this](const CellVerdict& v) { return is_unwritten(v.cell); });
   if (leaves_known_ground_) std::erase_if(set.verdicts, [this](const CellVerdict& v) { return was_known(v.cell); });
   if (set.verdicts.empty()) return std::nullopt;
   set.phase = phase_ + 1;
@@ -316,7 +332,7 @@ std::optional<ScanSet> EvidencePhase::observe(const TrackedScan& tracked) {
   const votes::Votes& votes = votes_.of(beams_, gone, {clear_, layer_, redraw_queue_}, tracked.scan.bearing_step_rad);
   transients_.observe({votes.yes[0], votes.no[0], votes.yes[1], votes.no[1]}, tracked.scan.time, now_ms_);
   leaves_known_ground_ = !tells_of_known_ground(estimate.belief);
-  const votes::Votes& told = leaves_known_ground_ ? without_known_ground(votes) : votes;
+  const votes::Votes& told = without_unwritten_ground(leaves_known_ground_ ? without_known_ground(votes) : votes);
   cast(told);
   keyframes_.keep(tracked, told.all);
   redraw_queue_.see(told.ends);

@@ -10,6 +10,7 @@
 
 #include "core/grid/tiled.hpp"
 #include "core/messages.hpp"
+#include "core/zones.hpp"
 #include "mapping/evidence/evidence_regions.hpp"
 #include "mapping/evidence/passing.hpp"
 #include "mapping/evidence/small_objects.hpp"
@@ -52,6 +53,9 @@ class EvidencePhase {
 
   [[nodiscard]] std::optional<ScanSet> observe(const TrackedScan& tracked);
 
+  /// Nothing there is proven, whatever is voted for: it stays transient. From the next scan on.
+  void leave_unwritten(ZonedGround ground) { unwritten_ = std::move(ground); }
+
   [[nodiscard]] std::uint32_t number() const { return phase_; }
   /// Blocks that are proven and wait to be handed on.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
@@ -74,6 +78,9 @@ class EvidencePhase {
   [[nodiscard]] bool is_large_enough(const std::vector<ProvenBlock>& region) const;
   /// Until the next call.
   [[nodiscard]] const votes::Votes& without_known_ground(const votes::Votes& votes);
+  /// Until the next call.
+  [[nodiscard]] const votes::Votes& without_unwritten_ground(const votes::Votes& votes);
+  [[nodiscard]] bool is_unwritten(Cell cell) const;
   /// At the begin of the run.
   [[nodiscard]] bool was_known(Cell cell) const;
   void cast(const votes::Votes& votes);
@@ -95,6 +102,8 @@ class EvidencePhase {
   std::shared_ptr<const OccupancyGrid> map_;
   std::shared_ptr<const OccupancyGrid> begun_with_;
   votes::Votes votes_on_new_ground_;
+  votes::Votes votes_on_written_ground_;
+  ZonedGround unwritten_;
   bool leaves_known_ground_ = false;  // as it is: by the newest keyframe
   votes::VoteLayer layer_;
   TransientLayer transients_;

@@ -23,6 +23,8 @@ std::string_view name_of(Refusal refusal) {
       return "pose in doubt";
     case Refusal::kSetByOperator:
       return "set by an operator";
+    case Refusal::kZoned:
+      return "in a zone that is never written";
   }
   return "?";
 }

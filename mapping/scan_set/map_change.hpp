@@ -18,8 +18,9 @@ enum class Refusal : std::uint8_t {
   kLowAcceptance,  ///< Eq. 11 below its threshold
   kImplausible,    ///< the merge contradicts the localizer's pose by more than its covariance allows (χ²)
   kNothingChanged,
-  kPoseInDoubt,   ///< the set rests on a pose that has proven wrong, or may have been (write gate)
-  kSetByOperator  ///< all that it would change has been set by an operator a moment ago
+  kPoseInDoubt,    ///< the set rests on a pose that has proven wrong, or may have been (write gate)
+  kSetByOperator,  ///< all that it would change has been set by an operator a moment ago
+  kZoned           ///< all that it would change lies in zones that are never written
 };
 [[nodiscard]] std::string_view name_of(Refusal refusal);
 

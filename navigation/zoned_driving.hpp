@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What zones ask of the pilot: blocked ones are obstacles that no laser sees, and in others it drives slowly. Both need
+// a pose that holds.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "core/messages.hpp"
+#include "core/zones.hpp"
+
+namespace deltamap::navigation {
+
+struct ZonedDrivingParams {
+  double within_m = 3.0;         ///< nearer borders count, from the robot's middle; > 0
+  double step_m = 0.1;           ///< between points of a border; > 0, smaller than the robot
+  double brakes_within_m = 0.5;  ///< so far before it a limit holds already; >= 0
+};
+
+/// Points on the borders of blocked zones in the robot's frame. A robot that stands in one may leave it: that one has
+/// none.
+[[nodiscard]] std::vector<Point2> blocked_borders(const Zones& zones, const Pose2& map_from_robot,
+                                                  const ZonedDrivingParams& params = {});
+
+/// The lowest limit of the zones that it is in, or is about to be; infinite where there is none.
+[[nodiscard]] double speed_limit_m_per_s(const Zones& zones, const Pose2& map_from_robot,
+                                         const ZonedDrivingParams& params = {});
+
+}  // namespace deltamap::navigation
