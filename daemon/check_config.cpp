@@ -21,6 +21,7 @@
 #include "daemon/settings/provenance.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "daemon/site/bays_file.hpp"
+#include "daemon/site/zones_file.hpp"
 #include "daemon/sockets/listening_socket.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/steps/localization_step.hpp"
@@ -252,6 +253,18 @@ Finding bays_finding(const Settings& settings, const GridGeometry& map) {
   }
 }
 
+Finding zones_finding(const Settings& settings, const GridGeometry& map) {
+  try {
+    const Zones zones = zones_on(map, settings.zones.file);
+    const auto over =
+        settings.initial_pose ? zones_over(settings.initial_pose->position(), zones) : std::vector<std::string>{};
+    if (!over.empty()) return {Level::kWarning, "zones", settings.zones.file + ": " + over.front()};
+    return {Level::kOk, "zones", settings.zones.file + ": " + counted(zones.size(), "zone")};
+  } catch (const std::runtime_error& error) {
+    return {Level::kError, "zones", error.what()};
+  }
+}
+
 /// Opens the page's port for a moment, as a start would, and closes it again.
 Finding page_finding(const DashboardSettings& page) {
   try {
@@ -285,6 +298,7 @@ std::vector<Finding> what_the_service_may_not(const Settings& settings) {
   require_seen("map.file", settings.map.file);
   require_seen("dashboard.token_file", settings.dashboard.token_file);
   require_seen("bays.file", settings.bays.file);
+  require_seen("zones.file", settings.zones.file);
   const auto require_allowed = [&](const char* key, const std::string& port) {
     const std::string driver = drivers::port::driver_of(port);
     const auto is_allowed = [&](const char* allowed) { return driver == allowed; };
@@ -322,6 +336,7 @@ std::vector<Finding> check_config(const Settings& settings, const std::string& c
     findings.push_back(place_finding("recording", file, file, [&] { return judged_recording_place(file); }));
   }
   if (first && !settings.bays.file.empty()) findings.push_back(bays_finding(settings, first->geometry()));
+  if (first && !settings.zones.file.empty()) findings.push_back(zones_finding(settings, first->geometry()));
   if (!settings.incidents.folder.empty()) findings.push_back(incidents_finding(settings.incidents.folder));
   if (!out.empty()) {
     findings.push_back(

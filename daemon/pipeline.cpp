@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 
 #include "core/channel.hpp"
 #include "core/files/file_lock.hpp"
@@ -20,6 +21,7 @@
 #include "daemon/records/recorder.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "daemon/settings/start_error.hpp"
+#include "daemon/site_reload.hpp"
 #include "daemon/stages/delta_stage.hpp"
 #include "daemon/stages/localization_stage.hpp"
 #include "daemon/stages/map_stage.hpp"
@@ -43,15 +45,8 @@ std::filesystem::path in_folder(const std::optional<std::filesystem::path>& fold
 
 /// What the stages log is heard by `tail`, too.
 Pipeline::Options with_warnings(Pipeline::Options options, LogTail& tail) {
-  if (!options.warn) options.warn = options.log;
-  const auto heard = [&tail](std::function<void(const std::string&)> tell, bool is_warning) {
-    return [&tail, tell = std::move(tell), is_warning](const std::string& text) {
-      tail.add(drivers::port::port_clock_now(), text, is_warning);
-      tell(text);
-    };
-  };
-  options.warn = heard(std::move(options.warn), true);
-  options.log = heard(std::move(options.log), false);
+  options.warn = heard_by(tail, &drivers::port::port_clock_now, options.warn ? options.warn : options.log, true);
+  options.log = heard_by(tail, &drivers::port::port_clock_now, std::move(options.log), false);
   return options;
 }
 
@@ -66,8 +61,9 @@ struct Pipeline::State {
   LogTail log_tail;
   Options options;
   Telemetry telemetry;
-  ThingsBoard things;  // map → control, page
-  BaysBoard bays;      // delta → control, page
+  ThingsBoard things;      // map → control, page
+  BaysBoard bays;          // delta → control, page
+  NewestBoard<Site> site;  // whoever reloads → page
 
   Channel<SensorMessage> sensors{128};    // io → localization: the newest message, journaled
   Channel<DeltaWork> tracked_scans{128};  // localization → delta: the newest scan is not looked at for changes,
@@ -76,7 +72,10 @@ struct Pipeline::State {
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
   Channel<std::shared_ptr<const TransientObstacles>> transients{8};  // delta → localization: offered again next scan
   Channel<control::Command> commands{16};       // control → localization: the newest command, and its sender is told
+  Channel<SharedSite> sites{4};                 // whoever reloads → localization → delta → map
   Channel<navigation::WanderParams> wander{4};  // whoever reloads → localization: refused, and who asked is told
+
+  SharedSite site_at_start;  // in options.start, too
 
   // The locks come before everything that writes: where another daemon has the files, this one ends without harm.
   std::optional<FileLock> out_lock;               // of --out
@@ -109,6 +108,7 @@ struct Pipeline::State {
   DeltaStage::Wiring delta_wiring();
   MapStage::Wiring map_wiring();
 
+  std::mutex reloading;
   double wall_began_s = 0.0;
   std::atomic<bool> has_poses_ended{false};  // the pose stream has failed; the run goes on without it
   std::unique_ptr<Stage> io_thread, localization_thread, delta_thread, map_thread, recorder_thread, control_thread,
@@ -119,10 +119,11 @@ struct Pipeline::State {
 Pipeline::State::State(const Settings& given, Options wanted)
     : settings{given},
       options{with_warnings(std::move(wanted), log_tail)},
+      site_at_start{begun_site(options.start, settings, options.warn)},
       out_lock{options.out ? or_start_error([&] { return lock_of_folder(*options.out); }) : std::nullopt},
       newest_lock{newest_map_lock(settings.map)},
       control{control::begun_control_desk(settings, control_wiring(), options.warn)},
-      page{begun_dashboard(settings, options.start, telemetry, {things, bays}, page_control(control.get(), io),
+      page{begun_dashboard(settings, options.start, telemetry, {things, bays, site}, page_control(control.get(), io),
                            options.log, options.warn)},
       poses{begun_pose_stream(settings, telemetry, options.warn)},
       incidents{begun_incident_keeper(incident_options(), telemetry, log_tail, {options.log, options.warn})},
@@ -131,8 +132,9 @@ Pipeline::State::State(const Settings& given, Options wanted)
                {.log = options.log, .saved = [this](const auto& outcome) { tell(outcome); }, .warn = options.warn}},
       io{settings, io_wiring()},
       localization{settings, options.start, options.first_map, localization_wiring()},
-      delta{settings, options.start.map->geometry(), !options.start.provisional.empty(), delta_wiring()},
+      delta{settings, options.start, delta_wiring()},
       map{settings, options.start, options.out, std::move(options.store), map_wiring()} {
+  site.set(site_at_start);
   telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
   telemetry.newest_revision.set(options.start.revision);
   telemetry.estimate.revision.set(options.start.revision);
@@ -213,6 +215,7 @@ LocalizationStage::Wiring Pipeline::State::localization_wiring() {
           .transients = transients,
           .commands = commands,
           .wander = wander,
+          .sites = sites,
           .tracked_scans = tracked_scans,
           .recorder = recorder.from_localization(),
           .telemetry = telemetry,
@@ -292,15 +295,15 @@ void Pipeline::State::begin_threads() {
   }
 }
 
-// --- reloading the settings ---
-
 LiveSettings::Outcome Pipeline::State::reload() {
   if (options.live == nullptr) return {false, {"the settings of this run came from no file"}};
+  const std::scoped_lock one_after_another{reloading};
   LiveSettings::Outcome outcome = options.live->reload([this](const Settings& wanted) {
     if (!wander.try_send(navigation::WanderParams{wanted.navigation.wander})) return false;
     io.set_safety(wanted.navigation.safety);
     return true;
   });
+  if (outcome.done) reload_site(settings, options.start.map->geometry(), {telemetry, sites, site}, outcome);
   for (const std::string& line : outcome.lines) (outcome.done ? options.log : options.warn)("reload: " + line);
   return outcome;
 }

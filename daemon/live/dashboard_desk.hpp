@@ -17,15 +17,17 @@
 #include "daemon/outputs/bays_board.hpp"
 #include "daemon/outputs/things_board.hpp"
 #include "daemon/settings/settings.hpp"
+#include "daemon/site/site.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 
 namespace deltamap::daemon {
 
-/// What is known of goods.
+/// What is known of goods, and what people have drawn.
 struct GoodsBoards {
   const ThingsBoard& things;
   const BaysBoard& bays;
+  const NewestBoard<Site>& site;
 };
 
 class DashboardDesk {

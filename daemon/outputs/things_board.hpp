@@ -3,11 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <mutex>
-#include <utility>
 #include <vector>
 
+#include "daemon/outputs/newest_board.hpp"
 #include "mapping/things/thing.hpp"
 
 namespace deltamap::daemon {
@@ -18,22 +16,6 @@ struct ThingList {
   std::uint64_t forgotten = 0;                 ///< things that are no longer listed
 };
 
-class ThingsBoard {
- public:
-  /// Any thread.
-  void set(std::shared_ptr<const ThingList> newest) {
-    const std::scoped_lock lock{mutex_};
-    newest_ = std::move(newest);
-  }
-  /// Any thread. Never null.
-  [[nodiscard]] std::shared_ptr<const ThingList> newest() const {
-    const std::scoped_lock lock{mutex_};
-    return newest_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::shared_ptr<const ThingList> newest_ = std::make_shared<const ThingList>();
-};
+using ThingsBoard = NewestBoard<ThingList>;
 
 }  // namespace deltamap::daemon

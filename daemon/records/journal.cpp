@@ -97,6 +97,7 @@ std::string note_of(const Decision& decision) {
     case Kind::kRelocalized:
       return note_of_command(words_of_relocalization(decision.map_from_robot), decision);
     case Kind::kMapSet:
+    case Kind::kSiteSet:
       break;
   }
   return {};
@@ -131,6 +132,12 @@ void Journal::read(std::string_view note) {
     Decision command{.kind = Kind::kMapSet, .scan = set->order.scan};
     command.scan_time = set->order.scan_time;
     command.set = std::move(set);
+    return add_command(std::move(command));
+  }
+  if (const auto set = set_site_.read(note)) {
+    Decision command{.kind = Kind::kSiteSet, .scan = set->scan};
+    command.scan_time = set->scan_time;
+    command.site = set->site;
     return add_command(std::move(command));
   }
   if (const auto decision = decision_of_note(note)) take(*decision);
@@ -169,6 +176,7 @@ void Journal::take(const Decision& decision) {
       if (std::find(commands_.begin(), commands_.end(), decision) == commands_.end()) add_command(decision);
       break;
     case Kind::kMapSet:
+    case Kind::kSiteSet:
       break;
   }
 }

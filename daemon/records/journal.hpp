@@ -17,6 +17,7 @@
 #include "core/geometry/pose2.hpp"
 #include "core/messages.hpp"
 #include "daemon/records/map_order.hpp"
+#include "daemon/records/site_note.hpp"
 
 namespace deltamap::daemon {
 
@@ -41,7 +42,8 @@ struct Decision {
     kPaused,        ///< by the operator: Δ-mapping does not see scan `scan` and those after it
     kResumed,       ///< by the operator: it sees scan `scan` again
     kRelocalized,   ///< by the operator: to `map_from_robot` before scan `scan`
-    kMapSet         ///< by the operator: the cells `set` before scan `scan`
+    kMapSet,        ///< by the operator: the cells `set` before scan `scan`
+    kSiteSet        ///< by the operator: bays and zones are those of `site` from scan `scan` on
   } kind = Kind::kRevision;
   std::uint32_t scan = 0;
   std::uint32_t number = 0;
@@ -49,11 +51,12 @@ struct Decision {
   /// Of an operator's command: Scan.time of `scan`. Nothing in recordings of older versions.
   std::optional<Timestamp> scan_time{};
   std::shared_ptr<const SetCells> set{};  ///< of kMapSet; else null
+  SharedSite site{};                      ///< of kSiteSet; else null
   friend bool operator==(const Decision&, const Decision&) = default;
 };
 
 [[nodiscard]] std::string note_of(const RunIdentity& run);
-/// Of any kind but kMapSet, which takes several notes (map_order).
+/// Of any kind but kMapSet and kSiteSet, which take several notes (map_order, site_note).
 [[nodiscard]] std::string note_of(const Decision& decision);
 [[nodiscard]] std::optional<RunIdentity> run_of_note(std::string_view note);
 [[nodiscard]] std::optional<Decision> decision_of_note(std::string_view note);
@@ -110,6 +113,7 @@ class Journal {
   std::map<std::uint32_t, std::uint32_t> closed_;      // phase → scan
   std::vector<Decision> commands_;
   SetCellsReader set_cells_;
+  SetSiteReader set_site_;
   std::set<std::uint32_t> dropped_, lost_, lost_odometry_, lost_tracked_, lost_sets_;
 };
 

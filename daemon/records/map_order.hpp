@@ -14,6 +14,7 @@
 
 #include "core/messages.hpp"
 #include "daemon/records/note_parts.hpp"
+#include "daemon/site/site.hpp"
 #include "mapping/bays/bays.hpp"
 
 namespace deltamap::daemon {
@@ -32,9 +33,9 @@ struct MapOrder {
 };
 
 /// What the delta thread reads, in order.
-using DeltaWork = std::variant<TrackedScan, MapOrder>;
+using DeltaWork = std::variant<TrackedScan, MapOrder, SharedSite>;
 /// What the map thread reads, in order.
-using MapWork = std::variant<MapRequest, MapOrder, mapping::bays::BayEvent>;
+using MapWork = std::variant<MapRequest, MapOrder, mapping::bays::BayEvent, SharedSite>;
 
 /// "undo of 7 by an operator", "rolled back to 3 …", "undo of thing 12 …": the reason of the revision that comes of it.
 [[nodiscard]] std::string reason_of(const MapOrder& order);

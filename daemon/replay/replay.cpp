@@ -103,11 +103,17 @@ void Replay::obey_commands_before(const Scan& scan) {
     if (command.kind == Decision::Kind::kRelocalized && !is_of_before)
       run_.localization().relocalize(command.map_from_robot);
     if (command.kind == Decision::Kind::kMapSet) keep_result(run_.obey(*command.set));
+    if (command.kind == Decision::Kind::kSiteSet) run_.take(site_to_take(*command.site));
     if (command.kind == Decision::Kind::kPaused) is_paused_ = true;
     if (is_paused_) run_.localization().apply(std::shared_ptr<const TransientObstacles>{});
     if (command.kind == Decision::Kind::kResumed) is_paused_ = false;
   }
   has_begun_ = true;
+}
+
+/// Bays that this replay was given are judged, whichever the recorded run had.
+Site Replay::site_to_take(const Site& recorded) const {
+  return job_.settings.bays.file.empty() ? recorded : Site{run_.bays().list()->bays, recorded.zones};
 }
 
 void Replay::look_for_changes(const TrackedScan& tracked) {

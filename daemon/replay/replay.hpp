@@ -39,6 +39,7 @@ class Replay {
   void warn(const Estimate& estimate) const;
   void obey_commands_before(const Scan& scan);
   void look_for_changes(const TrackedScan& tracked);
+  [[nodiscard]] Site site_to_take(const Site& recorded) const;
   void update_map(const MapRequest& request, std::uint32_t scan);
   [[nodiscard]] bool reaches_map(const ScanSet& set, std::uint32_t scan);
   void keep_result(const MapStep::Result& result);

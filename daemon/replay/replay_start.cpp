@@ -87,6 +87,8 @@ ReplayStart replay_start(const RecordedRun& recorded, const ReplayJob& job, Firs
     answer.began = "the map alone: what the recorded run had kept is not in the recording";
   }
   answer.journal = journal_state(recorded, job, identity);
+  const Settings& settings = job.settings;
+  answer.start.site = site_on(answer.start.map->geometry(), settings.bays.file, settings.zones.file);
   return answer;
 }
 

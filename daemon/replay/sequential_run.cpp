@@ -11,11 +11,20 @@ SequentialRun::SequentialRun(const Settings& settings, const StartMap& start, co
                              double map_delay_s, const RunDuties& duties)
     : localization_{settings, start},
       store_scan_{settings.mapping.store_scan, settings.seed, !start.provisional.empty()},
-      bays_{settings, start.map->geometry()},
+      bays_{start},
       map_{settings, start},
       revisions_{journal, map_delay_s, start.revision},
       transients_{journal},
-      tells_times_{duties.tells_times} {}
+      tells_times_{duties.tells_times} {
+  if (start.site) store_scan_.set_zones(start.site->zones);
+}
+
+void SequentialRun::take(const Site& site) {
+  localization_.set_zones(site.zones);
+  store_scan_.set_zones(site.zones);
+  bays_.set_bays(site.bays);
+  map_.set_zones(site.zones);
+}
 
 void SequentialRun::observe(const Odometry& odometry) { localization_.observe(odometry); }
 

@@ -45,6 +45,8 @@ class SequentialRun {
   /// As MapStep::take().
   [[nodiscard]] std::optional<MapStep::Result> update_map(const MapRequest& request);
   [[nodiscard]] MapStep::Result obey(const SetCells& wanted);
+  /// Other bays and zones from the next scan on.
+  void take(const Site& site);
 
   [[nodiscard]] LocalizationStep& localization() { return localization_; }
   [[nodiscard]] const LocalizationStep& localization() const { return localization_; }

@@ -59,6 +59,7 @@ std::vector<NamedFile> files_of(const Settings& settings, const std::string& fil
   add_map("map.file", settings.map.file, false);
   add("dashboard.token_file", settings.dashboard.token_file, false);
   add("bays.file", settings.bays.file, false);
+  add("zones.file", settings.zones.file, false);
   add("map.store", settings.map.store, true);
   if (const std::string& store = settings.map.store; !store.empty()) {
     const MemoryPlaces kept = memory_places(store);

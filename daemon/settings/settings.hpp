@@ -83,6 +83,11 @@ struct BaysSettings {
   std::string file;  ///< bays.yaml; empty: none are judged
 };
 
+/// Areas in which other rules hold.
+struct ZonesSettings {
+  std::string file;  ///< zones.yaml; empty: none
+};
+
 /// What outlives the run, beside map.store; a replay does not look at it.
 struct MemorySettings {
   double pose_period_s = 5.0;  ///< between two writings of the pose; > 0
@@ -121,6 +126,7 @@ struct Settings {
   RecordingSettings recording;
   IncidentSettings incidents;
   BaysSettings bays;
+  ZonesSettings zones;
 };
 
 /// A recording of this run may begin in its midst: the localizer is asked now and then what it knows.

@@ -280,6 +280,9 @@ std::vector<SettingKey> keys_of(Settings& settings) {
   keys.push_back(
       not_for_results(text_key("bays.file", settings.bays.file,
                                "YAML file of the bays whose state is told, read again by a reload; empty: none")));
+  keys.push_back(not_for_results(text_key("zones.file", settings.zones.file,
+                                          "YAML file of zones: never written, always transient, ignored, blocked, "
+                                          "slow; read again by a reload; empty: none")));
   return keys;
 }
 

@@ -36,6 +36,7 @@ const std::vector<SettingSection>& setting_sections() {
       {"recording", "the recording of both ports"},
       {"incidents", "the minutes around each loss, refusal, safety stop, device fault and operator's mark"},
       {"bays", "the places that goods are put on"},
+      {"zones", "areas of the site in which other rules hold"},
   };
   return kSections;
 }

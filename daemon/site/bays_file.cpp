@@ -80,6 +80,12 @@ std::vector<ListedPlace> read_places(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::vector<Bay> bays_of_text(const std::string& yaml, const std::string& name) {
+  const std::vector<ListedPlace> places = places_in(yaml, name, kBayKeys);
+  require_sound_places(places, name);
+  return bays_of(places);
+}
+
 std::vector<Bay> read_bays(const std::filesystem::path& file) { return bays_of(read_places(file)); }
 
 std::vector<Bay> bays_on(const GridGeometry& map, const std::string& file) {

@@ -19,6 +19,7 @@ namespace deltamap::daemon {
 /// Throws std::runtime_error: one line with file, line and bay where it cannot be read, an id stands twice, a polygon
 /// crosses itself or is too small to be judged, or two overlap.
 [[nodiscard]] std::vector<mapping::bays::Bay> read_bays(const std::filesystem::path& file);
+[[nodiscard]] std::vector<mapping::bays::Bay> bays_of_text(const std::string& yaml, const std::string& name);
 /// The same, where one lies off the map, too. None where no file is named.
 [[nodiscard]] std::vector<mapping::bays::Bay> bays_on(const GridGeometry& map, const std::string& file);
 /// The same of bays that stand in no file yet; `name` stands for it.

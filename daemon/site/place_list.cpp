@@ -32,7 +32,7 @@ double coordinate_in(const YAML::Node& node, const YAML::Node& corner, const std
     }
   }
   if (!std::isfinite(value)) refuse_place(corner, file, "a corner must be [x, y] or {x: …, y: …}, in metres");
-  return value;
+  return std::round(1e3 * value) / 1e3;
 }
 
 Polygon polygon_in(const YAML::Node& node, const std::string& file, const std::string& key) {

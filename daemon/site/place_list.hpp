@@ -27,7 +27,7 @@ struct ListedPlace {
   int line = 0;                                ///< where it begins in the file, from 1; 0: in none
 };
 
-/// `file` stands for the text in complaints. Throws std::runtime_error.
+/// `file` stands for the text in complaints. Corners count to a millimetre. Throws std::runtime_error.
 [[nodiscard]] std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& file, const PlaceKeys& keys);
 /// What places_in() reads again, to a millimetre.
 [[nodiscard]] std::string places_as_yaml(const std::vector<ListedPlace>& places, const PlaceKeys& keys);

@@ -18,11 +18,19 @@ const ScanSet* set_in(const MapWork& work) {
 
 }  // namespace
 
-DeltaStage::DeltaStage(const Settings& settings, const GridGeometry& map, bool inherits, Wiring wiring)
+DeltaStage::DeltaStage(const Settings& settings, const StartMap& start, Wiring wiring)
     : wiring_{std::move(wiring)},
-      store_scan_{settings.mapping.store_scan, settings.seed, inherits},
-      bays_{settings, map} {
+      store_scan_{settings.mapping.store_scan, settings.seed, !start.provisional.empty()},
+      bays_{start} {
+  if (start.site) store_scan_.set_zones(start.site->zones);
   wiring_.bays.set(bays_.list());
+}
+
+void DeltaStage::take(const SharedSite& site) {
+  store_scan_.set_zones(site->zones);
+  bays_.set_bays(site->bays);
+  wiring_.bays.set(bays_.list());
+  hand_over(site);
 }
 
 void DeltaStage::run() {
@@ -33,6 +41,8 @@ void DeltaStage::run() {
     offer_waiting();
     if (const auto* order = std::get_if<MapOrder>(&*work)) {
       hand_over(*order);
+    } else if (const auto* site = std::get_if<SharedSite>(&*work)) {
+      take(*site);
     } else {
       look_for_changes(std::get<TrackedScan>(*work));
     }

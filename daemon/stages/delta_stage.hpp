@@ -38,8 +38,7 @@ class DeltaStage {
     std::function<void(mapping::StoredScans)> show_scans;  ///< never waits
     BaysBoard& bays;                                       ///< for control and live page
   };
-  /// `inherits`: as StoreScan has it. Throws std::runtime_error where the bays' file is no good.
-  DeltaStage(const Settings& settings, const GridGeometry& map, bool inherits, Wiring wiring);
+  DeltaStage(const Settings& settings, const StartMap& start, Wiring wiring);
 
   /// The thread's work, until the channel is closed and empty.
   void run();
@@ -52,6 +51,7 @@ class DeltaStage {
  private:
   void look_for_changes(const TrackedScan& tracked);
   void show_bays(std::vector<mapping::bays::BayEvent> events, Timestamp now);
+  void take(const SharedSite& site);
   void hand_over(MapWork work);
   void offer_waiting();
   void offer_transients();

@@ -49,7 +49,7 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
                                      Wiring wiring)
     : wiring_{std::move(wiring)},
       step_{settings, start},
-      pilot_{settings},
+      pilot_{settings, start.site ? start.site->zones : Zones{}},
       mapping_enabled_{settings.mapping.enabled},
       first_revision_{start.revision},
       first_map_{first_map},
@@ -57,6 +57,7 @@ LocalizationStage::LocalizationStage(const Settings& settings, const StartMap& s
       memory_{settings.memory},
       is_kept_{!settings.map.store.empty()},
       wants_checkpoints_{has_checkpoints(settings)} {
+  if (start.site && *start.site != Site{}) note({0, {}, start.site});
   if (settings.initial_pose && step_.counts().at("poses_refused") > 0) {
     (void)wiring_.recorder.try_send(refused_start_line());
   }
@@ -111,6 +112,7 @@ void LocalizationStage::localize(Scan scan) {
   const std::uint32_t number = scan.number;
   take_revisions(number);
   take_transients(number);
+  take_sites(scan);
   take_commands(scan);
   TrackedScan tracked = step_.observe(std::move(scan));
   answer_relocalize(number);
@@ -157,6 +159,20 @@ void LocalizationStage::pilot(const TrackedScan& tracked) {
 }
 
 // --- the operator ---
+
+void LocalizationStage::take_sites(const Scan& scan) {
+  while (auto site = wiring_.sites.try_receive()) {
+    step_.set_zones((*site)->zones);
+    pilot_.set_zones((*site)->zones);
+    note({scan.number, scan.time, *site});
+    site_to_hand_on_ = *std::move(site);
+  }
+  if (site_to_hand_on_ && wiring_.tracked_scans.try_send(SharedSite{site_to_hand_on_})) site_to_hand_on_.reset();
+}
+
+void LocalizationStage::note(const SetSite& set) {
+  for (std::string& part : notes_of(set)) (void)wiring_.recorder.try_send(std::move(part));
+}
 
 void LocalizationStage::take_commands(const Scan& scan) {
   while (const auto command = wiring_.commands.try_receive()) {

@@ -29,8 +29,9 @@ class LocalizationStage {
     Channel<MapRevision>& revisions;
     Channel<std::shared_ptr<const TransientObstacles>>& transients;
     Channel<control::Command>& commands;
-    Channel<navigation::WanderParams>& wander;  ///< of a reload: the newest is taken
-    Channel<DeltaWork>& tracked_scans;          ///< and what an operator wants of the map
+    Channel<navigation::WanderParams>& wander;
+    Channel<SharedSite>& sites;         ///< of a reload: the newest is taken
+    Channel<DeltaWork>& tracked_scans;  ///< and what an operator wants of the map
     RecorderInput& recorder;
     Telemetry& telemetry;
     std::function<void(const PilotWord&)> drive;  ///< after each scan; never waits
@@ -57,6 +58,8 @@ class LocalizationStage {
   void take_revisions(std::uint32_t scan);
   void take_transients(std::uint32_t scan);
   void pilot(const TrackedScan& tracked);
+  void take_sites(const Scan& scan);
+  void note(const SetSite& set);
   void take_commands(const Scan& scan);
   /// No scan comes: a save is done, everything else is answered as not done.
   void take_commands_without_scan();
@@ -83,6 +86,7 @@ class LocalizationStage {
   Pulse pulse_;
   bool mapping_enabled_;
   bool is_paused_ = false;
+  SharedSite site_to_hand_on_;  // the delta thread has it not yet; null: it has
   std::uint32_t first_revision_;
   std::uint64_t first_map_;
   std::shared_ptr<const OccupancyGrid> map_;

@@ -101,6 +101,8 @@ void MapStage::take(const MapWork& work) {
     outputs_.settle(port_clock_now());
   } else if (const auto* event = std::get_if<mapping::bays::BayEvent>(&work)) {
     tell_bay(*event);
+  } else if (const auto* site = std::get_if<SharedSite>(&work)) {
+    step_.set_zones((*site)->zones);
   } else {
     obey(std::get<MapOrder>(work));
   }

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/steps/bay_step.hpp"
 
-#include "daemon/site/bays_file.hpp"
-
 namespace deltamap::daemon {
 
 using mapping::bays::BayEvent;
 
-BayStep::BayStep(const Settings& settings, const GridGeometry& map) : bays_{bays_on(map, settings.bays.file)} {}
+BayStep::BayStep(const StartMap& start) : bays_{start.site ? start.site->bays : std::vector<mapping::bays::Bay>{}} {}
 
 std::vector<BayEvent> BayStep::observe(const TrackedScan& tracked, bool pose_holds,
                                        const std::optional<MapRequest>& request) {

@@ -8,15 +8,17 @@
 
 #include "core/messages.hpp"
 #include "daemon/outputs/bays_board.hpp"
-#include "daemon/settings/settings.hpp"
+#include "daemon/steps/localization_step.hpp"
 #include "mapping/bays/bays.hpp"
 
 namespace deltamap::daemon {
 
 class BayStep {
  public:
-  /// Throws std::runtime_error: one line that names file and bay.
-  BayStep(const Settings& settings, const GridGeometry& map);
+  explicit BayStep(const StartMap& start);
+
+  /// Other bays from the next scan on; what is known of those that stay as they were is kept.
+  void set_bays(const std::vector<mapping::bays::Bay>& bays) { bays_.set(bays); }
 
   /// Every scan that Δ-mapping has looked at, and what came of it: where it takes back what a wrong pose has written,
   /// what that pose has seen of bays is taken back, too.

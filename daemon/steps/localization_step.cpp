@@ -65,13 +65,16 @@ std::string shift_from_given_pose(const Pose2& first_estimate, const Settings& s
 }
 
 LocalizationStep::LocalizationStep(const Settings& settings, const StartMap& start)
-    : localizer_{settings.localizer, start.map, initial_pose(settings, start), settings.seed},
+    : params_{settings.localizer},
+      ignored_{start.site ? start.site->zones : Zones{}, start.map},
+      revision_{start.revision},
+      localizer_{settings.localizer, ignored_.known(), initial_pose(settings, start), settings.seed},
       fit_watch_{settings.initial_pose.has_value()},
       mount_watch_{settings.localizer.odometry, settings.laser.session.is_upside_down},
       ratio_{settings.mapping.divergence},
       last_map_from_robot_{settings.initial_pose.value_or(start.remembered.value_or(Pose2{}))} {
   if (start.revision > 0)
-    apply({.number = start.revision, .time = {}, .map = start.map, .changes = {}, .field_patch = {}});
+    localizer_.apply({.number = start.revision, .time = {}, .map = ignored_.known(), .changes = {}, .field_patch = {}});
   if (start.calibration) localizer_.restore(*start.calibration);
   if (start.stability) (void)localizer_.restore(*start.stability);  // refused where its tiles differ: begins anew
   calibration_ = calibration_now_ = localizer_.calibration();
@@ -93,6 +96,7 @@ TrackedScan LocalizationStep::observe(Scan scan) {
   lines_.clear();
   tell(mount_watch_.observe(scan, wheel_watch_.contradicted_of_late()));
   TrackedScan tracked = localizer_.observe(std::move(scan));
+  tracked.estimate.map = ignored_.whole();
   tell(fit_watch_.observe(tracked, {fit(), localizer_.fit_of_all(), localizer_.range_scale()}));
   tell(wheel_watch_.observe(tracked, localizer_.counts().wheels_contradicted));
   tracked.sensor_doubt = sensor_doubt();
@@ -142,7 +146,15 @@ TrajectoryPoint LocalizationStep::pass_over(const Scan& scan) {
   return {scan.time, last_map_from_robot_ * motion_between(*last_odom_from_robot_, *odom_from_robot)};
 }
 
-void LocalizationStep::apply(const MapRevision& revision) { localizer_.apply(revision); }
+void LocalizationStep::apply(const MapRevision& revision) {
+  revision_ = revision.number;
+  localizer_.apply(ignored_.follow(revision, params_));
+}
+
+void LocalizationStep::set_zones(const Zones& zones) {
+  if (!ignored_.set_zones(zones)) return;
+  localizer_.apply({.number = revision_, .time = {}, .map = ignored_.known(), .changes = {}, .field_patch = {}});
+}
 
 void LocalizationStep::apply(std::shared_ptr<const TransientObstacles> transients) {
   localizer_.apply(std::move(transients));

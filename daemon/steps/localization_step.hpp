@@ -13,7 +13,9 @@
 #include "daemon/outputs/localization_log.hpp"
 #include "daemon/outputs/outputs.hpp"
 #include "daemon/settings/settings.hpp"
+#include "daemon/site/site.hpp"
 #include "daemon/steps/fit_watch.hpp"
+#include "daemon/steps/ignored_ground.hpp"
 #include "daemon/steps/mount_watch.hpp"
 #include "daemon/steps/wheel_watch.hpp"
 #include "localization/localizer.hpp"
@@ -38,6 +40,7 @@ struct StartMap {
   std::optional<localization::belief::StabilityRecord> stability{};     ///< what earlier runs have learned of this map
   std::optional<localization::motion::DriveCalibration> calibration{};  ///< and of wheels and mount
   std::vector<ProvisionalRevision> provisional{};                       ///< of `map`, oldest first
+  SharedSite site{};                                                    ///< what people have drawn on it; null: nothing
 };
 
 /// Throws SettingsError where `localization.initial_pose` lies outside the map: one line that names the map's extent.
@@ -60,6 +63,8 @@ class LocalizationStep {
   void apply(const MapRevision& revision);
   /// What is different from the map for now; null: nothing is known any more.
   void apply(std::shared_ptr<const TransientObstacles> transients);
+  /// From the next scan on: what the map has in ignored zones is kept from the localizer.
+  void set_zones(const Zones& zones);
   /// Starts again around a pose that a person gave (σ 0.2 m and 10°). False where nobody can stand there:
   /// the pose stays as it was.
   bool relocalize(const Pose2& map_from_robot);
@@ -95,6 +100,9 @@ class LocalizationStep {
   [[nodiscard]] SensorDoubt sensor_doubt() const;
   void tell_of_ground(bool is_new);
 
+  localization::LocalizerParams params_;
+  IgnoredGround ignored_;
+  std::uint32_t revision_;  // number of the map
   localization::Localizer localizer_;
   std::optional<localization::motion::DriveCalibration> calibration_;      // before the newest metre
   std::optional<localization::motion::DriveCalibration> calibration_now_;  // after the one before

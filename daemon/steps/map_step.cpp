@@ -50,6 +50,22 @@ MapStep::MapStep(const Settings& settings, StartMap start)
     provisional_.push_back({std::move(revision), Timestamp::min()});
   }
   newest_.provisional.clear();
+  if (newest_.site) set_zones(newest_.site->zones);
+}
+
+mapping::scan_set::MapUpdate MapStep::allowed(mapping::scan_set::MapUpdate update, const ScanSet& set) const {
+  using mapping::scan_set::Refusal;
+  if (!update.accepted()) return update;
+  const GridGeometry& geometry = newest_.map->geometry();
+  std::erase_if(update.changes,
+                [&](const CellChange& change) { return unwritten_.covers(geometry.centre_of(change.cell)); });
+  if (update.changes.empty()) {
+    update.refusal = Refusal::kZoned;
+    return update;
+  }
+  update.changes = operator_cells_.allowed(std::move(update.changes), set);
+  if (update.changes.empty()) update.refusal = Refusal::kSetByOperator;
+  return update;
 }
 
 std::vector<ProvisionalRevision> MapStep::provisional() const {
@@ -93,11 +109,7 @@ std::optional<MapStep::Result> MapStep::take(const MapRequest& request) {
 
 MapStep::Result MapStep::update(const ScanSet& set) {
   settle(set.settled);
-  mapping::scan_set::MapUpdate update = mapping::map_update(*newest_.map, set, update_);
-  if (update.accepted()) {
-    update.changes = operator_cells_.allowed(std::move(update.changes), set);
-    if (update.changes.empty()) update.refusal = mapping::scan_set::Refusal::kSetByOperator;
-  }
+  mapping::scan_set::MapUpdate update = allowed(mapping::map_update(*newest_.map, set, update_), set);
   Result result{.revision = std::nullopt, .note = note_of(set, update.changes, newest_.map->geometry())};
   result.note.acceptance = update.acceptance;
   if (!update.accepted()) {

@@ -16,6 +16,7 @@
 #include "daemon/settings/settings.hpp"
 #include "daemon/steps/localization_step.hpp"
 #include "mapping/gate/operator_cells.hpp"
+#include "mapping/scan_set/map_change.hpp"
 
 namespace deltamap::daemon {
 
@@ -35,6 +36,10 @@ class MapStep {
   /// them again. No revision where they are so already, or the map has another size.
   [[nodiscard]] Result obey(const SetCells& wanted);
 
+  /// From the next set on: within frozen and temporary zones no set writes a cell. Orders of an operator do, and what a
+  /// wrong pose has written before is taken back.
+  void set_zones(const Zones& zones) { unwritten_ = ZonedGround{zones, {ZoneKind::kFrozen, ZoneKind::kTemporary}}; }
+
   /// "paper" or "evidence": kept with each revision.
   [[nodiscard]] std::string_view method() const { return method_; }
   /// M_k, the newest map.
@@ -51,6 +56,8 @@ class MapStep {
   };
 
   [[nodiscard]] Result update(const ScanSet& set);
+  /// Without what zones and operators forbid.
+  [[nodiscard]] mapping::scan_set::MapUpdate allowed(mapping::scan_set::MapUpdate update, const ScanSet& set) const;
   [[nodiscard]] Result withdraw(const WithdrawOrder& order);
   void settle(const std::optional<Timestamp>& before);
   [[nodiscard]] MapRevision publish(Timestamp time, std::vector<CellChange> changes);
@@ -59,7 +66,8 @@ class MapStep {
   mapping::MapUpdateParams update_;
   localization::LocalizerParams localizer_;
   StartMap newest_;
-  std::deque<Provisional> provisional_;          // oldest first
+  std::deque<Provisional> provisional_;  // oldest first
+  ZonedGround unwritten_;
   mapping::gate::OperatorCells operator_cells_;  // that an operator has set
 };
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/steps/pilot_step.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "navigation/mapped_walls.hpp"
 #include "navigation/remembered_obstacles.hpp"
+#include "navigation/zoned_driving.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -15,7 +17,8 @@ constexpr double kSpinsForM = 0.3;  // claimed by the wheels of a robot that sta
 
 }  // namespace
 
-PilotStep::PilotStep(const Settings& settings) : drives_without_pose_{settings.navigation.drive_without_pose} {
+PilotStep::PilotStep(const Settings& settings, Zones zones)
+    : drives_without_pose_{settings.navigation.drive_without_pose}, zones_{std::move(zones)} {
   if (settings.navigation.mode == navigation::DriveMode::kWander) {
     wander_.emplace(settings.navigation.wander, settings.seed);
   }
@@ -38,13 +41,22 @@ PilotWord PilotStep::observe(const TrackedScan& tracked, const Seen& seen) {
   word.held_by = drives_without_pose_ ? StopReason::kNone : word.pose;
   word.expects_no_range = word.pose == StopReason::kNone && navigation::expects_no_range(tracked);
   if (wander_ && word.held_by == StopReason::kNone) {
-    word.command = wander_->step(tracked, obstacles_beside(tracked, seen));
+    const bool has_pose = word.pose == StopReason::kNone;
+    word.command = wander_->step(tracked, obstacles_beside(tracked, seen, has_pose));
+    if (has_pose) {
+      const double limit = navigation::speed_limit_m_per_s(zones_, tracked.estimate.map_from_robot);
+      word.command.speed_m_per_s = std::min(word.command.speed_m_per_s, limit);
+    }
   }
   return word;
 }
 
-std::vector<Point2> PilotStep::obstacles_beside(const TrackedScan& tracked, const Seen& seen) const {
+std::vector<Point2> PilotStep::obstacles_beside(const TrackedScan& tracked, const Seen& seen, bool has_pose) const {
   std::vector<Point2> obstacles = navigation::walls_behind_lost_beams(tracked, kMappedWithinM);
+  if (has_pose) {
+    const auto borders = navigation::blocked_borders(zones_, tracked.estimate.map_from_robot);
+    obstacles.insert(obstacles.end(), borders.begin(), borders.end());
+  }
   if (seen.transients == nullptr) return obstacles;
   const auto remembered =
       navigation::remembered_obstacles(*seen.transients, tracked, {.hull_m = wander_->params().robot_radius_m});

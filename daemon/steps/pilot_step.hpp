@@ -11,6 +11,7 @@
 
 #include "core/messages.hpp"
 #include "core/transient_obstacles.hpp"
+#include "core/zones.hpp"
 #include "daemon/settings/settings.hpp"
 #include "navigation/dead_beams.hpp"
 #include "navigation/pose_watch.hpp"
@@ -30,7 +31,7 @@ struct PilotWord {
 
 class PilotStep {
  public:
-  explicit PilotStep(const Settings& settings);
+  explicit PilotStep(const Settings& settings, Zones zones = {});
 
   /// What is known of a scan besides its pose.
   struct Seen {
@@ -42,12 +43,14 @@ class PilotStep {
   [[nodiscard]] PilotWord observe(const TrackedScan& tracked, const Seen& seen);
   /// In the middle of a run: from the next scan on.
   void set_params(const navigation::WanderParams& params);
+  void set_zones(Zones zones) { zones_ = std::move(zones); }
 
  private:
   /// What stands there although the scan does not show it.
-  [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked, const Seen& seen) const;
+  [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked, const Seen& seen, bool has_pose) const;
 
   bool drives_without_pose_;
+  Zones zones_;
   navigation::PoseWatch pose_watch_;
   navigation::DeadBeams dead_beams_;
   std::uint32_t times_let_drive_ = 0;

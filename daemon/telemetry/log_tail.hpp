@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "core/time.hpp"
 #include "core/utc_text.hpp"
@@ -41,5 +43,15 @@ class LogTail {
   std::deque<Line> lines_;
   std::size_t bytes_ = 0;
 };
+
+/// Tells a line, and keeps it in the tail, which must live as long. `now`: any thread.
+[[nodiscard]] inline std::function<void(const std::string&)> heard_by(LogTail& tail, Timestamp (*now)(),
+                                                                      std::function<void(const std::string&)> tell,
+                                                                      bool is_warning) {
+  return [&tail, now, tell = std::move(tell), is_warning](const std::string& text) {
+    tail.add(now(), text, is_warning);
+    tell(text);
+  };
+}
 
 }  // namespace deltamap::daemon

@@ -6,6 +6,7 @@ import { draw_bays, sign_bay } from "./bays.js";
 import { draw_particles, draw_stored, draw_way, sign_particles, sign_stored, sign_way } from "./belief_layers.js";
 import { circle, ink_of } from "./canvas.js";
 import { explain } from "./glossary.js";
+import { draw_zones, sign_zone, ZONES } from "./zones.js";
 
 const OLD_INK = "--soft";  // of what is no longer known to be so
 const JUMP_M = 2;      // the path is not joined over such a step
@@ -311,6 +312,8 @@ export const LAYERS = [
     keys: [["stands there now", (c) => hatched(c, 5, 1, 12, 12, ink_of("--orange"))],
            ["seen gone", (c) => { c.strokeStyle = ink_of("--blue"); c.lineWidth = 1.5; c.strokeRect(5, 1, 12, 12); }]] },
   { id: "changes", label: "newest changes", draw: draw_changes, sign: (c) => { c.strokeStyle = ink_of("--red"); c.setLineDash([4, 3]); c.lineWidth = 1.5; circle(c, 11, 7, 6); c.stroke(); } },
+  { id: "zones", label: "zones", is_of_now: true, draw: draw_zones,
+    keys: Object.values(ZONES).map((zone) => [zone[0], (c) => sign_zone(c, zone)]) },
   { id: "bays", label: "bays", is_of_now: true, draw: draw_bays,
     keys: ["full", "partly", "empty", "unknown"].map((state) => [`bay ${state}`, (c) => sign_bay(c, state)]) },
   { id: "things", label: "things", is_of_now: true, draw: draw_things,

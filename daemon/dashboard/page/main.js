@@ -14,6 +14,7 @@ import { MapView } from "./map_view.js";
 import { show_link, show_pose, show_run, show_status } from "./panels.js";
 import { Run } from "./run.js";
 import { outline_of, Things } from "./things.js";
+import { ZoneWatch } from "./zones.js";
 
 const MOST_SAMPLES = 3600;
 const NARROW_PX = 1400; // the legend would take a third of the map
@@ -135,6 +136,8 @@ const bays = new Bays(model, (bay) => {
   view.show(...middle_of(bay));
 }, () => view.draw_soon());
 
+const zones = new ZoneWatch(model, () => view.draw_soon());
+
 run.on_walk = (time) => {
   if (!history.is_open) return;
   const before = model.changes.filter((change) => change.accepted && change.time <= time).map((change) => change.revision);
@@ -186,6 +189,7 @@ const on = {
     may_command = Boolean(hello.control);
     things.clear();
     bays.clear();
+    zones.clear();
     history.close();
     model.samples.length = model.changes.length = 0;  // the stream begins with the past
     model.particles = model.stored = [];

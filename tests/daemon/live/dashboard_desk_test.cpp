@@ -40,7 +40,7 @@ std::uint16_t free_port() {
 class DashboardDeskTest : public testing::Test {
  protected:
   void start() {
-    desk_ = std::make_unique<DashboardDesk>(settings_, start_, telemetry_, GoodsBoards{things_, bays_});
+    desk_ = std::make_unique<DashboardDesk>(settings_, start_, telemetry_, GoodsBoards{things_, bays_, site_});
     thread_ = std::thread([this] { desk_->run(); });
   }
   ~DashboardDeskTest() override {
@@ -79,6 +79,7 @@ class DashboardDeskTest : public testing::Test {
   Telemetry telemetry_;
   ThingsBoard things_;
   BaysBoard bays_;
+  NewestBoard<Site> site_;
   std::unique_ptr<DashboardDesk> desk_;
   std::thread thread_;
 };
@@ -210,6 +211,19 @@ TEST_F(DashboardDeskTest, TellsOfBaysAndTheirAge) {
   EXPECT_EQ(bay["since"], nullptr);
   EXPECT_EQ(bay["things"], Json({12}));
   EXPECT_EQ(bay["polygon_m"].size(), 4u);
+}
+
+TEST_F(DashboardDeskTest, ShowsZonesAsTheirFileHasThem) {
+  start();
+  EXPECT_EQ(got("/api/zones").body, "{\"ok\":true,\"zones\":[]}\n");
+  const Polygon polygon{{1.0, 1.0}, {3.4, 1.0}, {3.4, 3.4}};
+  site_.set(std::make_shared<const Site>(
+      Site{{}, {{.id = "gate", .kind = ZoneKind::kSpeedLimit, .most_speed_m_per_s = 0.3, .polygon = polygon}}}));
+  const Json zone = Json::parse(got("/api/zones").body)["zones"][0];
+  EXPECT_EQ(zone["zoneId"], "gate");
+  EXPECT_EQ(zone["zoneType"], "SPEED_LIMIT");
+  EXPECT_EQ(zone["maximumSpeed"], 0.3);
+  EXPECT_EQ(zone["vertices"][1], (Json{{"x", 3.4}, {"y", 1.0}}));
 }
 
 TEST_F(DashboardDeskTest, TellsOfThings) {

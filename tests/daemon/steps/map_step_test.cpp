@@ -116,6 +116,23 @@ TEST_F(Withdrawal, LeavesWhatTheRunBeforeHasLeftOnceItIsSettled) {
   EXPECT_FALSE(withdraw(Timestamp::min(), 41.0).revision);
 }
 
+TEST_F(Withdrawal, WhatLiesInAFrozenZoneIsNeverWritten) {
+  const Polygon around{{8.5, 7.5}, {11.5, 7.5}, {11.5, 9.0}, {8.5, 9.0}};
+  step.set_zones({{.id = "F", .kind = ZoneKind::kFrozen, .polygon = around}});
+  test::DrawnScanParams noise;
+  bool was_refused = false;
+  for (int scan = 0; scan < 600; ++scan, time_s += 0.2) {
+    const Pose2 pose = test::below_the_containers(time_s);
+    const auto request = store_scan.observe(test::drawn_scan(with_box, step.map(), pose, time_s, random, noise));
+    if (!request) continue;
+    const std::optional<MapStep::Result> result = step.take(*request);
+    was_refused = was_refused || (result && result->note.reason == "in a zone that is never written");
+  }
+  EXPECT_TRUE(was_refused) << "sets came, as evidence did not know of the zone";
+  for (const CellChange& change : changes_between(hall, *step.map()))
+    EXPECT_FALSE(contains(around, hall.geometry().centre_of(change.cell)));
+}
+
 TEST_F(Withdrawal, IsNotDoneTwice) {
   (void)change(with_box);
   (void)withdraw(Timestamp::min(), 1.0);

@@ -145,6 +145,33 @@ TEST(PilotStep, CallsWheelsThatTurnWhileTheScansStandSpinning) {
   EXPECT_TRUE(stands_for(0.35));
 }
 
+/// What it says at the end of two metres, from x = 10 m on, with a zone that begins at x = 12.2 m.
+PilotWord word_before(ZoneKind kind, bool has_pose = true) {
+  const double middle = 0.5 * kHallM;
+  const Zone zone{.id = "Z",
+                  .kind = kind,
+                  .most_speed_m_per_s = 0.1,
+                  .polygon = {{12.2, middle - 3.0}, {16.0, middle - 3.0}, {16.0, middle + 3.0}, {12.2, middle + 3.0}}};
+  Drive drive{kBeyondM};
+  PilotStep pilot{wandering(true), {zone}};
+  PilotWord word;
+  for (int i = 0; i < 20; ++i) {
+    TrackedScan tracked = drive.next();
+    if (!has_pose) tracked.estimate.state = LocalizerState::kGlobal;
+    word = pilot.observe(tracked, {});
+  }
+  return word;
+}
+
+TEST(PilotStep, TurnsBeforeABlockedZoneAndSlowsDownBeforeASlowOne) {
+  EXPECT_GT(word_before(ZoneKind::kFrozen).command.speed_m_per_s, 0.2);
+  const PilotWord blocked = word_before(ZoneKind::kBlocked);
+  EXPECT_EQ(blocked.command.speed_m_per_s, 0.0);
+  EXPECT_NE(blocked.command.turn_rate_rad_per_s, 0.0);
+  EXPECT_LE(word_before(ZoneKind::kSpeedLimit).command.speed_m_per_s, 0.1);
+  EXPECT_GT(word_before(ZoneKind::kSpeedLimit, false).command.speed_m_per_s, 0.2) << "nobody knows where that is";
+}
+
 TEST(PilotStep, OfARunInWhichNobodyDrivesNeverCommands) {
   const PilotWord word = word_after(kLong, kBeyondM, {}, Settings{});
   EXPECT_EQ(word.held_by, StopReason::kNone);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// zones.yaml: zones of a site, named as VDA 5050 names them.
+//   zones:
+//     - zoneId: walls
+//       zoneType: FROZEN          # FROZEN, TEMPORARY, IGNORE, BLOCKED or SPEED_LIMIT
+//       zoneDescriptor: the north wall
+//       vertices: [{x: 0.0, y: 9.5}, {x: 20.0, y: 9.5}, {x: 20.0, y: 10.5}, {x: 0.0, y: 10.5}]
+//     - zoneId: gate
+//       zoneType: SPEED_LIMIT
+//       maximumSpeed: 0.3         # m/s
+//       vertices: [[4.0, 4.0], [6.0, 4.0], [6.0, 6.0]]
+#pragma once
+
+#include <string>
+
+#include "core/grid/grid_geometry.hpp"
+#include "core/zones.hpp"
+
+namespace deltamap::daemon {
+
+/// As in a file: "FROZEN".
+[[nodiscard]] std::string_view name_of(ZoneKind kind);
+
+/// None where no file is named. Throws std::runtime_error: one line with file, line and zone where it cannot be read,
+/// an id stands twice, a polygon crosses itself, or one lies off the map.
+[[nodiscard]] Zones zones_on(const GridGeometry& map, const std::string& file);
+/// `name` stands for the text; whether they lie on the map is not asked.
+[[nodiscard]] Zones zones_of_text(const std::string& yaml, const std::string& name);
+[[nodiscard]] std::string zones_as_yaml(const Zones& zones);
+
+/// A line each for those in which the robot must not be and stands: it may leave, and never comes back.
+[[nodiscard]] std::vector<std::string> zones_over(const Point2& robot_in_map, const Zones& zones);
+
+}  // namespace deltamap::daemon
