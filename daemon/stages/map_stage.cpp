@@ -156,6 +156,7 @@ void MapStage::note(const SetCells& set) {
 
 void MapStage::hand_on(const MapStep::Result& result) {
   changes_.add(result.note);
+  // First whoever serves maps, then the localizer: no pose names a revision that a planner cannot ask for.
   wiring_.show(result.revision ? &*result.revision : nullptr, result.note);
   if (result.revision) {
     wiring_.telemetry.newest_revision.set(result.revision->number);
