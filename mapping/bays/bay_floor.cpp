@@ -102,7 +102,7 @@ void BayFloor::forget() {
   }
 }
 
-BayFloor::Path BayFloor::path_of(const Point2& from, const Point2& direction) const {
+BayFloor::Path BayFloor::path_of(const Point2& from, const Point2& direction, double range_m) const {
   Path path;
   const std::array<double, 2> size{columns_ * edge_m_, rows_ * edge_m_};
   double enters_m = 0.0;
@@ -118,7 +118,7 @@ BayFloor::Path BayFloor::path_of(const Point2& from, const Point2& direction) co
     enters_m = std::max(enters_m, std::min(low_m, high_m));
     leaves_m = std::min(leaves_m, std::max(low_m, high_m));
   }
-  if (enters_m >= leaves_m) return path;
+  if (enters_m >= leaves_m || range_m < enters_m - kRim_m) return path;
   const Point2 begin = from + enters_m * direction;
   int column = std::clamp(static_cast<int>(begin.x() / edge_m_), 0, columns_ - 1);
   int row = std::clamp(static_cast<int>(begin.y() / edge_m_), 0, rows_ - 1);
@@ -150,7 +150,7 @@ BayFloor::Path BayFloor::path_of(const Point2& from, const Point2& direction) co
 void BayFloor::mark_beam(const Point2& from, const Point2& end) {
   const double range_m = (end - from).norm();
   if (range_m <= 0.0) return;
-  const Path path = path_of(from, (end - from) / range_m);
+  const Path path = path_of(from, (end - from) / range_m, range_m);
   const auto cell_of = [&](int step) -> FloorCell& {
     return cells_[static_cast<std::size_t>(path.steps[static_cast<std::size_t>(step)].cell)];
   };
@@ -246,6 +246,7 @@ BayFloor::Cluster BayFloor::cluster_from(int start) {
 void BayFloor::find_bodies() {
   for (FloorCell& cell : cells_) cell.is_body = cell.is_gathered = false;
   for (int start = 0; start < columns_ * rows_; ++start) {
+    if (cells_[static_cast<std::size_t>(start)].evidence < kTaken) continue;
     const Cluster cluster = cluster_from(start);
     if (cluster.count == 0 || cluster.across_m(edge_m_) < kBody_m) continue;
     for (std::size_t i = 0; i < cluster.count; ++i) cells_[static_cast<std::size_t>(cluster.members[i])].is_body = true;

@@ -57,7 +57,8 @@ class BayFloor {
   struct Path;
   struct Cluster;
 
-  [[nodiscard]] Path path_of(const Point2& from, const Point2& direction) const;
+  /// None where the beam ends clearly before the bay.
+  [[nodiscard]] Path path_of(const Point2& from, const Point2& direction, double range_m) const;
   void mark_beam(const Point2& from, const Point2& end);
   void take_marks(std::uint32_t time_ds);
   /// Of no cells where no beam ends there, or it belongs to another already.
