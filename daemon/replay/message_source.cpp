@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-
 namespace deltamap::daemon {
 
 FileMessages::FileMessages(const std::filesystem::path& recording, const drivers::port::ReplayWindow& window,
