@@ -21,7 +21,7 @@ std::string content_of(const StartMap& start) {
 constexpr const char* kKeptPoseIsMissing = "not obeyed: it began with a pose that was kept";
 
 std::string journal_state(const RecordedRun& recorded, const ReplayJob& job, const RunIdentity& identity) {
-  if (const std::string why = why_never_obeyed(recorded); !why.empty()) return why;
+  if (std::string why = why_never_obeyed(recorded); !why.empty()) return why;
   const auto& run = recorded.journal.run();
   if (run->memory != 0 && identity.memory == 0) return kKeptPoseIsMissing;
   if (*run != identity) return "not obeyed: other settings or map";

@@ -98,7 +98,9 @@ class SeenRun {
   BayTally drive(double for_s) {
     double next_change_s = kChangeEvery_s;
     double next_sample_s = 1.0;
-    for (double time_s = 0.0; time_s < for_s; time_s += kBayScan_s) {
+    const auto scans = static_cast<int>(std::ceil(for_s / kBayScan_s));
+    for (int number = 0; number < scans; ++number) {
+      const double time_s = number * kBayScan_s;
       if (time_s >= next_change_s) {
         change(time_s);
         next_change_s += kChangeEvery_s;

@@ -113,7 +113,7 @@ Point2 BayYard::floor(Random& random) const {
   if (dice < 0.6) return {random.uniform(1.5, 28.0), random.uniform(9.6, 13.2)};
   for (;;) {
     const std::size_t bay = random.index_below(static_cast<std::uint32_t>(bays_.size()));
-    const Point2 at = bays_[bay].polygon[0] + Point2{random.uniform(0.4, 2.0), random.uniform(0.4, 2.0)};
+    Point2 at = bays_[bay].polygon[0] + Point2{random.uniform(0.4, 2.0), random.uniform(0.4, 2.0)};
     if (truths_[bay] != BayState::kFull && (!loads_[bay] || simulation::distance_between(at, *loads_[bay]) > 0.4))
       return at;
   }

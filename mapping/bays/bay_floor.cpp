@@ -14,7 +14,7 @@ constexpr double kLeastEdge_m = 0.1;
 constexpr double kMostEdge_m = 0.25;
 constexpr double kCellsAlong = 12.0;  // of the longest side, where the edge lets them be
 constexpr int kMostAlong = 24;        // then the edge grows
-constexpr std::size_t kMostCells = kMostAlong * kMostAlong;
+constexpr std::size_t kMostCells = std::size_t{kMostAlong} * kMostAlong;
 constexpr double kRim_m = 0.25;  // so far before the bay a face may stand that belongs to what stands in it
 constexpr double kFreeBefore_m = 0.15;
 
@@ -80,10 +80,11 @@ BayFloor::BayFloor(const Polygon& polygon) {
   bay_from_map_ = inverse(map_from_bay);
   middle_ = turned * Point2{0.5 * (box.low + box.high)};
   radius_m_ = 0.5 * size.norm() + kRim_m;
-  cells_.resize(static_cast<std::size_t>(columns_ * rows_));
+  cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      FloorCell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+      const int place = row * columns_ + column;
+      FloorCell& cell = cells_[static_cast<std::size_t>(place)];
       const Point2 at = map_from_bay * Point2{(column + 0.5) * edge_m_, (row + 0.5) * edge_m_};
       cell.is_inside = contains(polygon, at);
       cell.is_core = cell.is_inside && distance_from_sides(polygon, at) >= 0.75 * edge_m_;
