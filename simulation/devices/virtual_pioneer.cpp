@@ -81,6 +81,7 @@ void VirtualPioneer::synchronize(const Command& command, Timestamp now) {
     state_ = State::kAwaitingOpen;
   } else if (command.number == CommandNumber::kOpen && state_ == State::kAwaitingOpen) {
     state_ = State::kConnected;
+    motors_enabled_ = false;  // always, even those that a button has switched on meanwhile
     sonar_on_ = setup_.sonars > 0;
     sonar_fired_ = 0;
     opened_ = now;

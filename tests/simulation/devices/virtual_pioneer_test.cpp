@@ -87,6 +87,13 @@ TEST(VirtualPioneer, SendsASipEveryCycleWithMotorsOff) {
   EXPECT_EQ(sips, 10);
 }
 
+TEST(VirtualPioneer, HasItsMotorsOffAfterOpenThoughAButtonHadSwitchedThemOnWhileItWaited) {
+  PioneerRig rig;
+  rig.robot.press_motors_button();
+  rig.connect();
+  EXPECT_FALSE(rig.next_sip().value().has(pioneer::sip_flag::kMotorsEnabled));
+}
+
 TEST(VirtualPioneer, AnswersSync0WithSipsWhereAnotherClientLeftItConnected) {
   PioneerRig rig;
   rig.connect();
