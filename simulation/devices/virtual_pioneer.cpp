@@ -64,7 +64,7 @@ void VirtualPioneer::take(const Command& command, std::span<const std::uint8_t> 
     return;
   }
   if (state_ == State::kConnected) return obey(command, now);
-  if (data.size() >= 1) synchronize(command, now);
+  if (!data.empty()) synchronize(command, now);
 }
 
 /// A4: each step answers with its echo; OPEN counts only after SYNC2.
