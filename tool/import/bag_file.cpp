@@ -65,7 +65,7 @@ class BagReader {
       try {
         take_record(reader, false);
       } catch (const std::runtime_error& error) {
-        file_.cut = "cut at byte " + std::to_string(at) + " of " + std::to_string(bytes.size()) + ": " + error.what();
+        file_.cut = cut_at(at, bytes.size(), error);
         break;
       }
     }

@@ -49,4 +49,9 @@ class ByteReader {
   std::size_t at_ = 0;
 };
 
+/// MessageFile::cut of a file of so many bytes.
+[[nodiscard]] inline std::string cut_at(std::size_t byte, std::size_t bytes, const std::exception& why) {
+  return "cut at byte " + std::to_string(byte) + " of " + std::to_string(bytes) + ": " + why.what();
+}
+
 }  // namespace deltamap::tool

@@ -38,7 +38,7 @@ class McapReader {
         if (reader.is_at_end()) throw std::runtime_error("its end is missing");
         take_record(reader, false);
       } catch (const std::runtime_error& error) {
-        file_.cut = "cut at byte " + std::to_string(at) + " of " + std::to_string(bytes.size()) + ": " + error.what();
+        file_.cut = cut_at(at, bytes.size(), error);
         break;
       }
     }
