@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 #include "drivers/port/port_clock.hpp"
@@ -31,14 +33,26 @@ class PseudoTerminal {
     (void)::grantpt(master_);
     (void)::unlockpt(master_);
     path_ = ::ptsname(master_);
+    other_end_ = ::open(path_.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK);
   }
-  ~PseudoTerminal() { hang_up(); }
+  ~PseudoTerminal() {
+    hang_up();
+    if (other_end_ >= 0) ::close(other_end_);
+  }
   void hang_up() {
     if (master_ >= 0) ::close(master_);
     master_ = -1;
   }
   void send(const Bytes& bytes) const {
     ASSERT_EQ(::write(master_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  /// What was sent is carried to the other end by a thread of the kernel, in pieces and when it gets to it.
+  void wait_until_carried(int bytes) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+    for (int unread = 0; unread < bytes; std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+      ASSERT_EQ(::ioctl(other_end_, FIONREAD, &unread), 0);
+      ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+    }
   }
   [[nodiscard]] Bytes received() const {
     Bytes bytes(4096);
@@ -55,6 +69,7 @@ class PseudoTerminal {
 
  private:
   int master_;
+  int other_end_ = -1;  // a second descriptor of the port's own end
   std::string path_;
 };
 
@@ -112,6 +127,7 @@ TEST(SerialPort, HandsOverAsOneChunkWhatCameWhileTheLoopStoodStill) {
   ASSERT_TRUE(port);
   constexpr std::size_t kScans = 15;
   for (std::size_t i = 0; i < kScans; ++i) device.send(Bytes(732, 0x02));  // more than a terminal gives at once
+  device.wait_until_carried(4 * 732);
   run_until(loop, [&] { return !chunks.empty(); });
   EXPECT_EQ(chunks, std::vector<std::size_t>{kScans * 732});
 }
