@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/geometry/points_in_map.hpp"
 
@@ -26,7 +27,8 @@ constexpr double kElsewhere = 0.05;   // likelihood of an end that lies off, rel
 constexpr double kHidden = 0.3;       // and of one that something would have to hide now
 constexpr double kOneSurfaceM = 0.3;  // between neighbouring ends
 constexpr double kStraight = 0.985;   // cosine of 10°
-constexpr double kAcrossM = 0.02;     // deviation of an end across its surface
+constexpr double kSmallProduct = 1e-200;
+constexpr double kAcrossM = 0.02;  // deviation of an end across its surface
 
 /// A scan, asked for the surface that it sees in a direction.
 class SeenSurfaces {
@@ -35,18 +37,23 @@ class SeenSurfaces {
       : scan_{scan},
         rays_{rays},
         laser_{rays.front().origin.cast<double>()},
-        first_bearing_rad_{scan.robot_from_laser.theta + scan.first_bearing_rad},
-        across_m2_{kAcrossM * kAcrossM + kOffShare * kOffShare * claimed_m * claimed_m} {}
+        across_m2_{kAcrossM * kAcrossM + kOffShare * kOffShare * claimed_m * claimed_m} {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double bearing_rad = scan.robot_from_laser.theta + scan.bearing_rad(i);
+      const bool has_end = scan.beams[i].kind == BeamKind::kRange;
+      directions_.push_back(has_end ? Point2{(rays[i].end - rays[i].origin).cast<double>()}
+                                    : Point2{std::cos(bearing_rad), std::sin(bearing_rad)});
+    }
+  }
 
-  /// Log-likelihood of an end of an earlier scan, given where it would lie now, robot frame; 0 where the scan says
-  /// nothing about it.
-  [[nodiscard]] double likelihood(const Point2& end) const {
+  /// Likelihood of an end of an earlier scan, given where it would lie now, robot frame, beside that of one that fits;
+  /// 1 where the scan says nothing about it. It is looked for from beam `near` on.
+  [[nodiscard]] double likelihood(const Point2& end, std::size_t near) const {
     const Point2 arm = end - laser_;
-    const double place = turn_between(first_bearing_rad_, std::atan2(arm.y(), arm.x())) / scan_.bearing_step_rad;
-    if (!(place >= 0.0 && place < static_cast<double>(rays_.size() - 1))) return 0.0;
-    const auto beam = static_cast<std::size_t>(place);
+    const std::size_t beam = beam_before(arm, near);
+    if (beam + 1 >= rays_.size()) return 1.0;
     const bool is_seen = scan_.beams[beam].kind == BeamKind::kRange && scan_.beams[beam + 1].kind == BeamKind::kRange;
-    if (!is_seen) return 0.0;
+    if (!is_seen) return 1.0;
     const Point2 a = rays_[beam].end.cast<double>();
     const Point2 b = rays_[beam + 1].end.cast<double>();
     const double range_m = arm.norm();
@@ -58,11 +65,25 @@ class SeenSurfaces {
                              ? std::abs(along.x() * (end - a).y() - along.y() * (end - a).x()) / length_m
                              : std::min((end - a).norm(), (end - b).norm());
     const double deviations2 = off_m * off_m / (across_m2_ + kOffRad * kOffRad * range_m * range_m);
-    if (range_m > seen_m + 0.1 && deviations2 > 9.0) return std::log(kHidden);
-    return std::log(kElsewhere + (1.0 - kElsewhere) * std::exp(-0.5 * deviations2));
+    if (range_m > seen_m + 0.1 && deviations2 > 9.0) return kHidden;
+    return kElsewhere + (1.0 - kElsewhere) * std::exp(-0.5 * deviations2);
   }
 
  private:
+  /// The beam on the right of `arm` or along it, looked for from beam `near` on; where none is, the number of beams.
+  [[nodiscard]] std::size_t beam_before(const Point2& arm, std::size_t near) const {
+    const auto is_left_of = [&](std::size_t i) {
+      return directions_[i].x() * arm.y() - directions_[i].y() * arm.x() >= 0.0;
+    };
+    std::size_t beam = std::min(near, directions_.size() - 1);
+    while (beam + 1 < directions_.size() && is_left_of(beam + 1)) ++beam;
+    while (!is_left_of(beam)) {
+      if (beam == 0) return directions_.size();
+      --beam;
+    }
+    return beam;
+  }
+
   /// From this beam to the next a wall goes on that is seen at a slant: so do the ends before, or those after.
   [[nodiscard]] bool is_straight(std::size_t beam) const {
     const auto end = [this](std::size_t i) { return Point2{rays_[i].end.cast<double>()}; };
@@ -75,9 +96,9 @@ class SeenSurfaces {
 
   const Scan& scan_;
   std::span<const RayInRobot> rays_;
-  Point2 laser_;              // robot frame
-  double first_bearing_rad_;  // robot frame
-  double across_m2_;          // variance of an end across its surface, beside what a turn makes of it
+  Point2 laser_;                    // robot frame
+  std::vector<Point2> directions_;  // of the beams, robot frame
+  double across_m2_;                // variance of an end across its surface, beside what a turn makes of it
 };
 
 }  // namespace
@@ -120,11 +141,16 @@ double Standstill::log_odds(const Scan& scan, std::span<const RayInRobot> rays, 
   const SeenSurfaces seen{scan, rays, claimed.position().norm()};
   const auto likelihood = [&](const Pose2& kept_from_robot) {
     const PointsInMap robot_from_kept{inverse(kept_from_robot)};
-    double sum = 0.0;
-    for (const Kept& kept : kept_) {
-      if (kept.beam.kind == BeamKind::kRange) sum += seen.likelihood(robot_from_kept(kept.ray.end));
+    double log_of_all = 0.0;
+    double of_some = 1.0;  // a logarithm for many factors, before they underflow
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      if (kept_[i].beam.kind != BeamKind::kRange) continue;
+      of_some *= seen.likelihood(robot_from_kept(kept_[i].ray.end), i);
+      if (of_some > kSmallProduct) continue;
+      log_of_all += std::log(of_some);
+      of_some = 1.0;
     }
-    return sum / kAlikeBeams;
+    return (log_of_all + std::log(of_some)) / kAlikeBeams;
   };
   const double stands = likelihood({});
   double moved = likelihood(claimed);

@@ -33,10 +33,10 @@ double expected(const SparseRow& row, const Eigen::VectorXd& mean, const Fixed& 
   return sum;
 }
 
-double covariance_of(const SparseRow& a, const SparseRow& b, const Eigen::MatrixXd& covariance) {
+double covariance_of(const SparseRow& a, const SparseRow& b, const OffsetState& state) {
   double sum = 0.0;
   for (const SparseRow::Entry& p : a.used()) {
-    for (const SparseRow::Entry& q : b.used()) sum += p.value * q.value * covariance(p.index, q.index);
+    for (const SparseRow::Entry& q : b.used()) sum += p.value * q.value * state.covariance(p.index, q.index);
   }
   return sum;
 }
@@ -143,7 +143,7 @@ std::span<const Sighting> OffsetFilter::find(const sensor::LikelihoodField& fiel
     if (record.followed_as == SurfaceRecord::kNotFollowed) return {record.offset_m, 0.0, sighting::kMostDeviationM};
     const Eigen::Index offset = OffsetState::offset_of(static_cast<std::size_t>(record.followed_as));
     return {state_.mean()[offset], state_.mean()[offset + 1],
-            std::sqrt(std::max(0.0, state_.covariance()(offset, offset)))};
+            std::sqrt(std::max(0.0, state_.covariance(offset, offset)))};
   });
 }
 
@@ -171,10 +171,10 @@ std::vector<bool> OffsetFilter::fit_of(std::span<const Sighting> sightings, cons
       continue;
     }
     const SurfaceMeasurement seen = measurement_of(sighting, at, OffsetState::offset_of(surface_of(sighting)));
-    const double cross = covariance_of(seen.distance, seen.turn, state_.covariance());
+    const double cross = covariance_of(seen.distance, seen.turn, state_);
     Eigen::Matrix2d spread;
-    spread << covariance_of(seen.distance, seen.distance, state_.covariance()) + seen.distance_variance, cross, cross,
-        covariance_of(seen.turn, seen.turn, state_.covariance()) + (seen.has_turn ? seen.turn_variance : 1.0);
+    spread << covariance_of(seen.distance, seen.distance, state_) + seen.distance_variance, cross, cross,
+        covariance_of(seen.turn, seen.turn, state_) + (seen.has_turn ? seen.turn_variance : 1.0);
     const Eigen::Vector2d off{seen.distance_m + expected(seen.distance, state_.mean(), here),
                               seen.turn_rad + expected(seen.turn, state_.mean(), here)};
     fits.push_back(off.dot(spread.inverse() * off) <= kInnovationGate);
@@ -317,7 +317,7 @@ void OffsetFilter::correct_by_rest(const sensor::LikelihoodField& field, double 
   const Eigen::Vector<double, 6> before = state_.mean().head<6>();
   const Eigen::Matrix<double, 3, 6> by = state_.scan_by_pose_and_mount();
   const Eigen::Vector3d start = before.head<3>() + by.rightCols<3>() * (before.tail<3>() - mount);
-  const Eigen::Matrix3d spread = by * state_.covariance().topLeftCorner<6, 6>() * by.transpose();
+  const Eigen::Matrix3d spread = by * state_.covariance_at<6>(0) * by.transpose();
   Eigen::Vector3d at = start;
   Eigen::Matrix3d information;
   Eigen::Vector3d pull;

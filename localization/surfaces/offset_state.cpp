@@ -79,7 +79,7 @@ void OffsetState::start(const sensor::RefinedPose& at) {
 }
 
 sensor::RefinedPose OffsetState::pose() const {
-  return {{mean_[0], mean_[1], wrapped_angle(mean_[2])}, covariance_.topLeftCorner<kPose, kPose>()};
+  return {{mean_[0], mean_[1], wrapped_angle(mean_[2])}, covariance_at<kPose>(0)};
 }
 
 motion::DriveCalibration OffsetState::calibration() const {
@@ -107,12 +107,9 @@ void OffsetState::predict(const motion::WheelStep& step, const PoseCovariance& a
   mean_.head<kPose>() += Eigen::Vector3d{moved.x(), moved.y(), motion.theta};
   mean_.segment<kLearned>(kPose) =
       mean_.segment<kLearned>(kPose).cwiseMax(-kLargestErrors).cwiseMin(kLargestErrors).eval();
-  const PoseCovariance of_pose = by * covariance_.topLeftCorner<kFixed, kFixed>() * by.transpose() + added;
-  const Eigen::Matrix<double, kPose, Eigen::Dynamic> beside = by * covariance_.topRows<kFixed>();
-  // Written as each other's mirror: a difference between the two halves would grow from update to update.
-  covariance_.topRows<kPose>() = beside;
-  covariance_.leftCols<kPose>() = beside.transpose();
-  covariance_.topLeftCorner<kPose, kPose>() = 0.5 * (of_pose + of_pose.transpose());
+  const PoseCovariance of_pose = by * covariance_at<kFixed>(0) * by.transpose() + added;
+  covariance_.leftCols<kPose>() = (columns<kFixed>(0) * by.transpose()).eval();
+  covariance_.topLeftCorner<kPose, kPose>() = of_pose;
   covariance_.diagonal().segment<kLearned>(kPose) += length_m * kWalk;
 }
 
@@ -141,11 +138,11 @@ bool OffsetState::update(const sensor::RefinedPose& seen) {
   Eigen::Matrix<double, kPose, kPosed> by = scan_by_pose_and_mount();
   by.middleCols<2>(kMount).setZero();  // a centre of rotation that is told wrong looks the same
   const Eigen::Vector3d innovation = difference(pose().map_from_robot, seen.map_from_robot);
-  const Eigen::Matrix<double, Eigen::Dynamic, kPose> cross = covariance_.leftCols<kPosed>() * by.transpose();
+  const Eigen::Matrix<double, Eigen::Dynamic, kPose> cross = columns<kPosed>(0) * by.transpose();
   const PoseCovariance inverse = (by * cross.topRows<kPosed>() + seen.covariance).inverse();
   if (innovation.dot(inverse * innovation) > kInnovationGate) return false;
   mean_ += cross * (inverse * innovation);
-  covariance_ -= (cross * inverse * cross.transpose()).eval();
+  subtract_product<kPose>(cross * inverse, cross);
   return true;
 }
 
@@ -155,8 +152,7 @@ Eigen::Matrix<double, 3, 6> OffsetState::scan_by_pose_and_mount() const {
   return by;
 }
 
-// With H the rows, R their variances and H P Hᵀ + R = L Lᵀ: P − W Wᵀ, where W = P Hᵀ L⁻ᵀ. One half of the matrix is
-// computed and mirrored.
+// With H the rows, R their variances and H P Hᵀ + R = L Lᵀ: P − W Wᵀ, where W = P Hᵀ L⁻ᵀ.
 void OffsetState::update(std::span<const RowMeasurement> measurements) {
   const auto count = static_cast<Eigen::Index>(measurements.size());
   if (count == 0) return;
@@ -165,7 +161,10 @@ void OffsetState::update(std::span<const RowMeasurement> measurements) {
   Eigen::VectorXd innovation{count};
   for (Eigen::Index i = 0; i < count; ++i) {
     const RowMeasurement& measured = measurements[static_cast<std::size_t>(i)];
-    for (const SparseRow::Entry& entry : measured.row.used()) gain.col(i) += entry.value * covariance_.col(entry.index);
+    for (const auto& [index, value] : measured.row.used()) {
+      gain.col(i).head(index) += value * covariance_.row(index).head(index).transpose();
+      gain.col(i).tail(mean_.size() - index) += value * covariance_.col(index).tail(mean_.size() - index);
+    }
     expected.row(i).setZero();
     for (const SparseRow::Entry& entry : measured.row.used())
       expected.row(i).head(i + 1) += entry.value * gain.row(entry.index).head(i + 1);
@@ -176,10 +175,7 @@ void OffsetState::update(std::span<const RowMeasurement> measurements) {
   root.matrixL().solveInPlace(innovation);
   root.matrixU().solveInPlace<Eigen::OnTheRight>(gain);
   mean_ += gain * innovation;
-  covariance_.selfadjointView<Eigen::Lower>().rankUpdate(gain, -1.0);
-  mirror_lower_half();
+  subtract_product<Eigen::Dynamic>(gain, gain);
 }
-
-void OffsetState::mirror_lower_half() { covariance_.triangularView<Eigen::StrictlyUpper>() = covariance_.transpose(); }
 
 }  // namespace deltamap::localization::surfaces

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -75,22 +76,24 @@ class OffsetState {
   void multiply(Eigen::Index first, const Eigen::Matrix<double, kCount, kCount>& precision,
                 const Eigen::Matrix<double, kCount, 1>& pull) {
     using Square = Eigen::Matrix<double, kCount, kCount>;
-    const Eigen::Matrix<double, Eigen::Dynamic, kCount> left = covariance_.middleCols<kCount>(first);
-    const Square inner = covariance_.block<kCount, kCount>(first, first);
+    const Eigen::Matrix<double, Eigen::Dynamic, kCount> left = columns<kCount>(first);
+    const Square inner = covariance_at<kCount>(first);
     const Square gain = precision * (Square::Identity() + inner * precision).inverse();
     const Eigen::Matrix<double, kCount, 1> here = mean_.segment<kCount>(first);
     mean_ += left * ((Square::Identity() - gain * inner) * pull - gain * here);
-    const Eigen::Matrix<double, Eigen::Dynamic, kCount> weighed = left * gain;
-    for (Eigen::Index column = 0; column < covariance_.cols(); ++column) {  // too thin for a general product to pay
-      const Eigen::Index below = covariance_.rows() - column;
-      for (int k = 0; k < kCount; ++k)
-        covariance_.col(column).tail(below) -= left(column, k) * weighed.col(k).tail(below);
-    }
-    mirror_lower_half();
+    subtract_product<kCount>(left * gain, left);
   }
 
   [[nodiscard]] const Eigen::VectorXd& mean() const { return mean_; }
-  [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }
+  [[nodiscard]] double covariance(Eigen::Index i, Eigen::Index k) const {
+    return covariance_(std::max(i, k), std::min(i, k));
+  }
+  /// Of kCount entries from `first` on.
+  template <int kCount>
+  [[nodiscard]] Eigen::Matrix<double, kCount, kCount> covariance_at(Eigen::Index first) const {
+    return covariance_.block<kCount, kCount>(first, first).template selfadjointView<Eigen::Lower>();
+  }
+  [[nodiscard]] Eigen::MatrixXd covariance() const { return covariance_.selfadjointView<Eigen::Lower>(); }
   /// Where the offset of a surface stands in mean and covariance; its turn follows.
   [[nodiscard]] static Eigen::Index offset_of(std::size_t surface) {
     return kFixed + 2 * static_cast<Eigen::Index>(surface);
@@ -102,10 +105,31 @@ class OffsetState {
   [[nodiscard]] bool is_sound() const { return mean_.allFinite() && covariance_.diagonal().minCoeff() >= 0.0; }
 
  private:
-  void mirror_lower_half();
+  template <int kCount>
+  [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, kCount> columns(Eigen::Index first) const {
+    const Eigen::Index after = covariance_.rows() - first - kCount;
+    Eigen::Matrix<double, Eigen::Dynamic, kCount> columns{covariance_.rows(), kCount};
+    columns.topRows(first) = covariance_.block(first, 0, kCount, first).transpose();
+    columns.template middleRows<kCount>(first) = covariance_at<kCount>(first);
+    columns.bottomRows(after) = covariance_.block(first + kCount, first, after, kCount);
+    return columns;
+  }
+  /// a · bᵀ, which is symmetric, from the covariance. Column by column: only half of it is wanted.
+  template <int kCount>
+  void subtract_product(const Eigen::Matrix<double, Eigen::Dynamic, kCount>& a,
+                        const Eigen::Matrix<double, Eigen::Dynamic, kCount>& b) {
+    for (Eigen::Index column = 0; column < covariance_.cols(); ++column) {
+      auto below = covariance_.col(column).tail(covariance_.rows() - column);
+      if constexpr (kCount == Eigen::Dynamic) {
+        below.noalias() -= a.bottomRows(below.size()) * b.row(column).transpose();
+      } else {  // too thin for a general product to pay
+        for (int k = 0; k < kCount; ++k) below -= b(column, k) * a.col(k).tail(below.size());
+      }
+    }
+  }
 
   Eigen::VectorXd mean_;
-  Eigen::MatrixXd covariance_;
+  Eigen::MatrixXd covariance_;  // its lower half: nothing of the upper one is read
 };
 
 }  // namespace deltamap::localization::surfaces

@@ -40,7 +40,7 @@ SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch
       in_view_{std::move(in_view)},
       latest_first_(switches.size()),
       known_{(state.pose().covariance + slip).inverse()},
-      pose_inverse_{state.covariance().topLeftCorner<3, 3>().inverse()} {
+      pose_inverse_{state.covariance_at<3>(0).inverse()} {
   for (std::size_t i = 0; i < switches.size(); ++i) {
     const SurfaceSwitch& of = switches[i];
     const Eigen::Index at = OffsetState::offset_of(i);
@@ -59,8 +59,8 @@ SlipReading::SlipReading(const OffsetState& state, std::span<const SurfaceSwitch
 }
 
 double SlipReading::variance_beside_pose(Eigen::Index i) const {
-  const Eigen::Vector3d with_pose = state_.covariance().block<3, 1>(0, i);
-  return std::max(1e-8, state_.covariance()(i, i) - with_pose.dot(pose_inverse_ * with_pose));
+  const Eigen::Vector3d with_pose{state_.covariance(i, 0), state_.covariance(i, 1), state_.covariance(i, 2)};
+  return std::max(1e-8, state_.covariance(i, i) - with_pose.dot(pose_inverse_ * with_pose));
 }
 
 double SlipReading::cost_of_moved_now(std::size_t number) const {

@@ -22,7 +22,7 @@ struct Cavity {
 };
 
 Cavity cavity_of(const SurfaceSwitch& of, const OffsetState& state, Eigen::Index at) {
-  const Eigen::Matrix2d known = state.covariance().block<2, 2>(at, at).inverse();
+  const Eigen::Matrix2d known = state.covariance_at<2>(at).inverse();
   const Eigen::Matrix2d without = known - of.precision;
   Cavity cavity;
   cavity.is_proper = without(0, 0) > 0.0 && without.determinant() > 0.0;
@@ -56,8 +56,8 @@ double log_odds(const SurfaceSwitch& of, const Cavity& cavity) {
 bool stand_off_alike(const OffsetState& state, std::size_t a, std::size_t b) {
   const Eigen::Index i = OffsetState::offset_of(a);
   const Eigen::Index k = OffsetState::offset_of(b);
-  const auto& c = state.covariance();
-  const double deviation_m = std::sqrt(std::max(0.0, c(i, i) + c(k, k) - 2.0 * c(i, k)));
+  const double deviation_m =
+      std::sqrt(std::max(0.0, state.covariance(i, i) + state.covariance(k, k) - 2.0 * state.covariance(i, k)));
   return std::abs(state.mean()[i] - state.mean()[k]) < kSameOffsetM + 2.0 * deviation_m;
 }
 
