@@ -163,22 +163,23 @@ const HypothesisReport& HypothesisTracker::observe(const sensor::LikelihoodField
   if (seen.kidnapped && !kidnapped_) search_.start();  // not with a scan from before
   kidnapped_ = seen.kidnapped;
   bank_.make_room(suspicious_ || kidnapped_);
-  since_step_m_ += motion.position().norm();
-  since_step_rad_ += std::abs(motion.theta);
-  if (seen.ends.size() > 0 && tells_more(motion)) look(field, seen);
+  since_step_.add(motion);
+  since_place_.add(motion);
+  if (seen.ends.size() > 0 && tells_more()) look(field, seen);
   return report_;
 }
 
-bool HypothesisTracker::tells_more(const Pose2& motion) {
-  since_place_m_ += motion.position().norm();
-  since_place_rad_ += std::abs(motion.theta);
-  const bool is_another_place = since_place_m_ >= kPlaceM || since_place_rad_ >= kPlaceRad;
-  if (is_another_place || (searches() && search_.under_way())) {
-    since_place_m_ = 0.0;
-    since_place_rad_ = 0.0;
+bool HypothesisTracker::tells_more() {
+  if (since_place_.reaches(kPlaceM, kPlaceRad) || (searches() && search_.under_way())) {
+    since_place_ = {};
     looks_at_place_ = 0;
   }
   return ++looks_at_place_ <= kLooksAtAPlace;
+}
+
+void HypothesisTracker::Way::add(const Pose2& motion) {
+  driven_m += motion.position().norm();
+  turned_rad += std::abs(motion.theta);
 }
 
 void HypothesisTracker::look(const sensor::LikelihoodField& field, const Seen& seen) {
@@ -251,13 +252,12 @@ void HypothesisTracker::admit_all(const sensor::LikelihoodField& field, std::spa
 void HypothesisTracker::weigh(const sensor::LikelihoodField& field, const Seen& seen) {
   const bool believes = believing_ && !bank_.hypotheses().empty();
   std::span<const float> weights;
-  if (since_step_m_ >= HypothesisBank::kStepM || since_step_rad_ >= HypothesisBank::kStepRad) {
+  if (since_step_.reaches(HypothesisBank::kStepM, HypothesisBank::kStepRad)) {
     weights = decorrelation_.weights(ends_, seen.continuous_odom_from_robot);
     if (believes)
       outlier_rate_.observe(1.0 - sensor::explained_share(field, ends_, bank_.hypotheses().front().map_from_robot));
     bank_.weigh(field, ends_, weights, outlier_rate_.evidence_weight());
-    since_step_m_ = 0.0;
-    since_step_rad_ = 0.0;
+    since_step_ = {};
   }
   if (!believes) return alias_monitor_.clear();
   alias_monitor_.observe({.field = field,

@@ -91,7 +91,7 @@ class HypothesisTracker {
   /// Is the whole map searched, alone or beside the believed pose?
   [[nodiscard]] bool searches() const { return !believing_ || suspicious_ || kidnapped_; }
   /// The first scans at a place tell all that there is to see from it.
-  [[nodiscard]] bool tells_more(const Pose2& motion);
+  [[nodiscard]] bool tells_more();
   void look(const sensor::LikelihoodField& field, const Seen& seen);
   void weigh(const sensor::LikelihoodField& field, const Seen& seen);
   void keep_near_ends();
@@ -99,6 +99,16 @@ class HypothesisTracker {
   void admit_beside_believed(const sensor::LikelihoodField& field, const Pose2& rough, const Pose2& odom,
                              double own_fit);
   void admit_all(const sensor::LikelihoodField& field, std::span<const Pose2> poses, const Pose2& odom);
+  /// How far the robot has driven and turned.
+  struct Way {
+    double driven_m = 0.0;
+    double turned_rad = 0.0;
+
+    void add(const Pose2& motion);
+    [[nodiscard]] bool reaches(double metres, double radians) const {
+      return driven_m >= metres || turned_rad >= radians;
+    }
+  };
   /// Of a new hypothesis, against the best that is known.
   struct Odds {
     double ahead = 0.0;      ///< log evidence of the scans of the last metres
@@ -134,10 +144,8 @@ class HypothesisTracker {
   double elsewhere_prior_;
   std::optional<Pose2> last_believed_;  // predicted by odometry
   bool probe_nearby_next_ = false;
-  double since_step_m_ = 0.0;
-  double since_step_rad_ = 0.0;
-  double since_place_m_ = 0.0;
-  double since_place_rad_ = 0.0;
+  Way since_step_;
+  Way since_place_;
   int looks_at_place_ = 0;
   HypothesisReport report_;
   double support_nats_ = 0.0;

@@ -1,24 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// MCAP files and the messages in them, taken for what their types say and for what they do not.
-#include "tests/fuzz/input.hpp"
-#include "tool/import/message_file.hpp"
-#include "tool/import/ros_messages.hpp"
+// MCAP files and the messages in them.
+#include "tests/fuzz/recorded_messages.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace deltamap;
-  try {
-    (void)tool::read_mcap(fuzz::text_of({data, size}), [](const tool::MessageView& message) {
-      try {
-        (void)tool::scan_in(message);
-      } catch (const std::runtime_error&) {
-      }
-      try {
-        (void)tool::poses_in(message);
-      } catch (const std::runtime_error&) {
-      }
-    });
-  } catch (const std::runtime_error&) {
-  }
+  deltamap::fuzz::try_recording(deltamap::tool::read_mcap, data, size);
   return 0;
 }

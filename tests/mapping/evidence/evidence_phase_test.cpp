@@ -76,10 +76,10 @@ constexpr double kNever_s = 80.0;
 constexpr double kBetweenScans_s = 0.2;
 
 /// When a parked robot hands on its first set of a box that becomes wider at that time.
-double first_set_s(const EvidencePhaseParams& params, double wider_at_s) {
+double first_set_s(const EvidencePhaseParams& params, double wider_at_s, const OccupancyGrid& known = hall()) {
   EvidencePhase phase{params};
   Random random{5};
-  const auto map = std::make_shared<const OccupancyGrid>(hall());
+  const auto map = std::make_shared<const OccupancyGrid>(known);
   const OccupancyGrid narrow = hall_with({11.0, 8.0}, {12.0, 8.4}, CellState::kOccupied);
   const OccupancyGrid wide = hall_with({11.0, 8.0}, {13.0, 8.4}, CellState::kOccupied);
   for (double time_s = 0.0; time_s < kNever_s; time_s += kBetweenScans_s) {
@@ -103,6 +103,17 @@ TEST(EvidencePhase, HandsARegionOnOnceItHasCeasedToGrowOrHasWaitedTooLong) {
   const double from_the_newest_s = first_set_s(params, kWiderAt_s);
   EXPECT_GT(from_the_newest_s, from_the_oldest_s + kLonger_s);
   EXPECT_LT(from_the_newest_s, kNever_s);
+}
+
+TEST(EvidencePhase, HandsOnAtOnceWhatLiesWhereNothingWasKnown) {
+  const OccupancyGrid unknown_there = hall_with({10.0, 7.5}, {14.0, 9.5}, CellState::kUnknown);
+  EvidencePhaseParams params;
+  params.settle_s = params.most_wait_s = 20.0;
+  const double known_s = first_set_s(params, 0.0);
+  const double unknown_s = first_set_s(params, 0.0, unknown_there);
+  EXPECT_LT(unknown_s, known_s - 15.0);
+  params.draws_at_once_s = params.settle_s;
+  EXPECT_GT(first_set_s(params, 0.0, unknown_there), params.settle_s);
 }
 
 TEST(EvidencePhase, SaysNothingWhileThePoseIsLost) {
