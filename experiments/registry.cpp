@@ -9,13 +9,13 @@
 namespace deltamap::experiments {
 
 std::vector<Experiment> experiments() {
-  std::vector<Experiment> all{hall_experiment(),      stale_map_experiment(),    verdict_experiment(),
-                              fig2_4_experiment(),    fig6_experiment(),         fig13_experiment(),
-                              fig14_experiment(),     table1_experiment(),       merge_experiment(),
-                              gate_experiment(),      shifted_hall_experiment(), unseen_experiment(),
-                              first_map_experiment(), bent_maps_experiment(),    ablation_experiment(),
-                              faults_experiment(),    good_driving_experiment(), carried_experiment(),
-                              incidents_experiment(), things_experiment(),       bays_experiment()};
+  std::vector<Experiment> all{
+      hall_experiment(),         stale_map_experiment(), verdict_experiment(),      fig2_4_experiment(),
+      fig6_experiment(),         fig13_experiment(),     fig14_experiment(),        table1_experiment(),
+      merge_experiment(),        gate_experiment(),      shifted_hall_experiment(), unseen_experiment(),
+      first_map_experiment(),    bent_maps_experiment(), ablation_experiment(),     faults_experiment(),
+      good_driving_experiment(), carried_experiment(),   incidents_experiment(),    things_experiment(),
+      bays_experiment(),         zones_experiment()};
   for (Experiment& one : changing_world_experiments()) all.push_back(std::move(one));
   return all;
 }

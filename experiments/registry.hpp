@@ -25,6 +25,7 @@ namespace deltamap::experiments {
 [[nodiscard]] Experiment shifted_hall_experiment();
 [[nodiscard]] Experiment things_experiment();
 [[nodiscard]] Experiment bays_experiment();
+[[nodiscard]] Experiment zones_experiment();
 [[nodiscard]] Experiment unseen_experiment();
 [[nodiscard]] Experiment first_map_experiment();
 [[nodiscard]] Experiment bent_maps_experiment();

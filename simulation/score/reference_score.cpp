@@ -135,15 +135,15 @@ ReferenceScore reference_score(std::vector<StampedPose> trajectory, const std::v
   const auto at = errors_along(reference, trajectory, of_each);
   const auto count = static_cast<double>(reference.size());
   score.coverage = static_cast<double>(std::count_if(at.begin(), at.end(), [](const auto& e) { return !!e; })) / count;
-  std::optional<Timestamp> lost_since;
+  std::size_t lost_from = 0;
   std::size_t lost = 0;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const bool is_found = at[i] && *at[i] <= kLostM;
-    if (is_found) lost_since.reset();
-    if (is_found) continue;
+    if (at[i] && *at[i] <= kLostM) {
+      lost_from = i + 1;
+      continue;
+    }
     ++lost;
-    if (!lost_since) lost_since = reference[i].time;
-    score.longest_lost_s = std::max(score.longest_lost_s, seconds(reference[i].time - *lost_since));
+    score.longest_lost_s = std::max(score.longest_lost_s, seconds(reference[i].time - reference[lost_from].time));
   }
   score.lost_share = static_cast<double>(lost) / count;
   return score;

@@ -105,12 +105,22 @@ from its change on, also over several visits. *Right*: empty, partly and full as
 nothing else changes; the robot stands at another place every 90 s, its pose off by 2 cm and 0.2°. A *false flip* is any change of a state.
 """
 
+ZONES = """# Zones: is nothing written, and is the pose as good?
+
+Written by `./dev experiments --only zones`, or from what `deltamap-lab zones` has left in its folder, on %s: %s.
+
+Worlds of [`unseen`](../experiments.md), each with six squares of 2 to 6 m about things that its first map knows. *Frozen*: localizer and mapping
+as delivered; a cell counts as written if any revision has it other than the first map. *Ignored*: the map is never written, and within the
+squares all that it has is drawn 0.5 m off in x and y; RMSE of the pose by that map and the zones, by the right map, and by that map without zones.
+"""
+
 # Their tables fill a page of their own. `empty`: what an empty table says; `seed`: of other seeds the page lies in the run's folder.
 Page = collections.namedtuple("Page", "file about empty seed")
 PAGES = {"ablation": Page("docs/results/ablation.md", ABLATION, "Not asked this time.", None),
          "unseen": Page("docs/results/unseen.md", UNSEEN, "None.", 1000),
          "things": Page("docs/results/things.md", THINGS, "None.", None),
-         "bays": Page("docs/results/bays.md", BAYS, "None.", None)}
+         "bays": Page("docs/results/bays.md", BAYS, "None.", None),
+         "zones": Page("docs/results/zones.md", ZONES, "None.", None)}
 
 
 def page_of(summary):

@@ -118,5 +118,11 @@ TEST(ShortDrive, LeavesNothingWrittenWhereItWasCarried) {  // gate
   }
 }
 
+TEST(ShortDrive, WritesNothingInFrozenZonesAndKeepsThePoseBesideIgnoredOnes) {  // zones
+  const Figures of = figures_of("zones", "seed1", 6.0);
+  EXPECT_EQ(of.at("cells written within frozen zones"), 0.0);
+  EXPECT_GT(of.at("cells written beside frozen zones"), 0.0);
+}
+
 }  // namespace
 }  // namespace deltamap::experiments
