@@ -10,6 +10,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <chrono>
 #include <functional>
@@ -140,6 +141,7 @@ TEST(SerialPort, HandsOverAsOneChunkWhatComesInPiecesBehindAStandstill) {
   ASSERT_TRUE(port);
   for (int piece = 0; piece < 3; ++piece) {
     device.send(Bytes(2048, 0x02));
+    device.wait_until_carried(2048);
     loop.restart();
     EXPECT_EQ(loop.run_one(), 1u);
   }
@@ -196,14 +198,18 @@ TEST(SerialPort, RestsNoLongerWhereTheBaudChangesOrInputIsDiscarded) {
   const std::vector<std::function<void(BytePort&)>> ends_of_rest{[](BytePort& of) { of.set_baud(38400); },
                                                                  [](BytePort& of) { of.discard_input(); }};
   for (const auto& end_rest : ends_of_rest) {
-    device.send(Bytes(4, 0x02));
-    const std::size_t before = count;
-    run_until(loop, [&] { return count > before; });
-    const auto began = std::chrono::steady_clock::now();
-    end_rest(*port);
-    device.send({0x06});
-    run_until(loop, [&] { return count == before + 5; });
-    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(80));
+    auto soonest = std::chrono::steady_clock::duration::max();  // another program may have the processor
+    for (int attempt = 0; attempt < 5; ++attempt) {
+      device.send(Bytes(4, 0x02));
+      const std::size_t before = count;
+      run_until(loop, [&] { return count > before; });
+      const auto began = std::chrono::steady_clock::now();
+      end_rest(*port);
+      device.send({0x06});
+      run_until(loop, [&] { return count == before + 5; });
+      soonest = std::min(soonest, std::chrono::steady_clock::now() - began);
+    }
+    EXPECT_LT(soonest, std::chrono::milliseconds(80));
   }
 }
 

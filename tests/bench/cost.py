@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What the localizer costs beside an earlier commit of its own: instructions under callgrind, which repeat on any machine, and the ratio of
+both. The earlier one is checked out and built below build/cost. Called by ./dev bench cost.
+usage: cost.py [COMMIT] [--out FILE]    COMMIT: by default the one that the targets were set against"""
+import argparse, pathlib, subprocess, sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import localizer_cost
+from measuring import ROOT, provenance, row, run, table_lines
+
+FIRST = "38c24d49"
+# What is done, beams (0: all 181), what it is called, and the most that it may be of the earlier one.
+JOBS = [("track", 60, "a scan tracked, KLD and refinement, static hall, 60 beams", 0.66), ("track", 0, "the same, 181 beams", None),
+        ("update", 60, "a whole update, 500 × 60", None), ("update", 0, "a whole update, 500 × 181", None),
+        ("weigh", 60, "weighing, per particle and beam, 60 beams", None),
+        ("patch", 0, "a 5 × 5 m container patched into a 700² field", None)]
+
+
+def built(commit):
+    """localizer_cost of that commit."""
+    folder = ROOT / "build/cost" / commit
+    if not folder.exists():
+        run("git", "worktree", "prune")
+        run("git", "worktree", "add", "--detach", folder, commit)
+    print("cost: building %s …" % commit, file=sys.stderr, flush=True)
+    for command in (["cmake", "--preset", "release"], ["cmake", "--build", "--preset", "release", "--target", "localizer_cost"]):
+        if subprocess.run(command, cwd=folder, stdout=subprocess.DEVNULL).returncode:
+            raise SystemExit("cost: %s does not build; see above" % commit)
+    return folder / "build/release/bench/localizer_cost"
+
+
+def rows(earlier):
+    made = []
+    for what, beams, name, most in JOBS:
+        before, now = (localizer_cost.instructions(program, what, beams) for program in (earlier, localizer_cost.X86_64))
+        print("cost: %s: %.3g -> %.3g" % (name, before, now), file=sys.stderr, flush=True)
+        made.append(row(name, "%.3g; %.2f of it" % (now, now / before), "≤ %.2f" % most if most else "",
+                        now / before <= most if most else None, "%.3g" % before))
+    return made
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("commit", nargs="?", default=FIRST)
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/results/cost.md")
+    arguments = parser.parse_args()
+    commit = run("git", "rev-parse", "--short=8", arguments.commit).strip()
+    made = rows(built(commit))
+    text = "\n".join(["# What the localizer costs beside an earlier commit", "",
+                      "Written by `./dev bench cost %s` (%s). Instructions that callgrind counts for one unit of each; they repeat on any"
+                      % (commit, provenance()), "processor that has AVX2. Times and peers: [the localizer, measured](localization.md).", "",
+                      *table_lines(made, "at %s" % commit), ""])
+    arguments.out.write_text(text)
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
