@@ -30,7 +30,7 @@ using Steady = std::chrono::steady_clock;
 constexpr std::size_t kReadBytes = 65536;  // more than a terminal keeps for a program that stands still
 constexpr std::size_t kMostInTime = 1024;  // a frame has at most 812 bytes: more than that at once has waited
 constexpr auto kSettle = std::chrono::milliseconds(2);
-constexpr double kRestShare = 0.95;  // of the line time of awaited bytes: two clocks may differ by some percent
+constexpr auto kRestMargin = std::chrono::microseconds(500);   // two clocks differ, and a byte takes its time
 constexpr auto kShortestRest = std::chrono::milliseconds(2);   // below that a timer costs more than it saves
 constexpr auto kLongestRest = std::chrono::milliseconds(100);  // a length may be garbage, and a device be unplugged
 constexpr auto kDrainPoll = std::chrono::milliseconds(2);
@@ -130,11 +130,10 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
     if (!closed_ && !failed_) rest_or_wait(std::exchange(awaited_, 0));
   }
 
-  /// A frame comes in twenty pieces and more: they are read together when nearly all must have come, and still each
-  /// byte is dated by those that followed it.
+  /// A frame comes in twenty pieces and more: they are read together when all must have come, and still each byte is
+  /// dated by those that followed it, but for the margin.
   void rest_or_wait(std::size_t awaited) {
-    const auto line_time = std::chrono::microseconds(10'000'000 * awaited / baud_);
-    const auto rest = std::chrono::duration_cast<std::chrono::microseconds>(kRestShare * line_time);
+    const auto rest = std::chrono::microseconds(10'000'000 * awaited / baud_) + kRestMargin;
     if (rest < kShortestRest || !tasks_.empty()) return wait_for_input();
     detach();
     read_after(std::min<std::chrono::microseconds>(rest, kLongestRest));
