@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/epoll.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <termios.h>
@@ -13,9 +14,12 @@
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <numeric>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -211,6 +215,42 @@ TEST(SerialPort, RestsNoLongerWhereTheBaudChangesOrInputIsDiscarded) {
     }
     EXPECT_LT(soonest, std::chrono::milliseconds(80));
   }
+}
+
+/// This process's descriptor of such a file; -1: none.
+int descriptor_of(const std::string& file) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code error;
+    if (std::filesystem::read_symlink(entry.path(), error) == file) return std::stoi(entry.path().filename());
+  }
+  return -1;
+}
+
+TEST(SerialPort, TellsOnceWhenTheLoopCannotHearOfItAgainBehindARest) {
+  PseudoTerminal device;
+  boost::asio::io_context loop;
+  auto [port, refused, note] = open_serial_port(loop, device.path(), 9600);
+  ASSERT_TRUE(port) << refused;
+  std::size_t count = 0;
+  std::vector<std::string> reasons;
+  port->start({[&, to = port.get()](std::span<const std::uint8_t> bytes, Timestamp) {
+                 count += bytes.size();
+                 if (count == 4) to->await(80);
+               },
+               [&](const std::string& reason) { reasons.push_back(reason); }});
+  device.send(Bytes(4, 0x02));
+  run_until(loop, [&] { return count == 4; });
+  // While it rests somebody else makes the loop listen to its terminal: that is refused a second time.
+  const int poll = descriptor_of("anon_inode:[eventpoll]");
+  const int terminal = descriptor_of(device.path());
+  epoll_event nothing{};
+  ASSERT_EQ(::epoll_ctl(poll, EPOLL_CTL_ADD, terminal, &nothing), 0) << "it rests: the loop does not hear of it";
+  device.send({0x06});
+  run_until(loop, [&] { return !reasons.empty(); });
+  EXPECT_EQ(count, 5u) << "what came meanwhile is handed over";
+  loop.restart();
+  loop.run_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(reasons, std::vector<std::string>{"the device cannot be listened to (File exists)"});
 }
 
 TEST(SerialPort, ChangesTheBaudAfterTheBytesBeforeAndBeforeTheBytesAfter) {
