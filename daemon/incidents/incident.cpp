@@ -15,8 +15,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, kIncidentKinds> kKindNames{"mark",     "lost",        "kidnapped",
-                                                                  "refusals", "safety-stop", "device-fault"};
+constexpr std::array<std::string_view, kIncidentKinds> kKindNames{
+    "mark", "lost", "kidnapped", "refusals", "safety-stop", "device-fault", "daemon-ended"};
 constexpr std::size_t kLargestFacts = 1 << 20;
 
 Json event_json(const IncidentEvent& event) {
@@ -51,6 +51,7 @@ Incident incident_in(const Json& json) {
   incident.first_revision = json.at("first_revision").get<std::uint32_t>();
   incident.first_map = json.at("first_map").get<std::string>();
   incident.version = json.at("version").get<std::string>();
+  incident.lacks = json.value("lacks", "");  // not in those of earlier versions
   return incident;
 }
 
@@ -82,7 +83,16 @@ std::string json_text(const Incident& incident) {
   json["first_revision"] = incident.first_revision;
   json["first_map"] = incident.first_map;
   json["version"] = incident.version;
+  json["lacks"] = incident.lacks;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Incident incident_of(const std::string& json_text) {
+  try {
+    return incident_in(Json::parse(json_text));
+  } catch (const Json::exception&) {
+    throw std::runtime_error("is damaged");
+  }
 }
 
 Incident read_incident(const fs::path& folder) {
@@ -92,9 +102,7 @@ Incident read_incident(const fs::path& folder) {
     throw std::runtime_error(folder.string() + ": is no incident: no " + kIncidentFacts);
   if (fs::file_size(file, error) > kLargestFacts || error) throw std::runtime_error(file.string() + ": is too large");
   try {
-    return incident_in(Json::parse(text_of_file(file)));
-  } catch (const Json::exception&) {
-    throw std::runtime_error(file.string() + ": is damaged");
+    return incident_of(text_of_file(file));
   } catch (const std::runtime_error& why) {
     throw std::runtime_error(file.string() + ": " + why.what());
   }

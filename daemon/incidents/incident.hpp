@@ -17,9 +17,9 @@
 
 namespace deltamap::daemon {
 
-enum class IncidentKind : std::uint8_t { kMark, kLost, kKidnapped, kRefusals, kSafetyStop, kDeviceFault };
-inline constexpr std::size_t kIncidentKinds = 6;
-/// "mark", "lost", "kidnapped", "refusals", "safety-stop", "device-fault"
+enum class IncidentKind : std::uint8_t { kMark, kLost, kKidnapped, kRefusals, kSafetyStop, kDeviceFault, kDaemonEnded };
+inline constexpr std::size_t kIncidentKinds = 7;
+/// "mark", "lost", "kidnapped", "refusals", "safety-stop", "device-fault", "daemon-ended"
 [[nodiscard]] std::string_view name_of(IncidentKind kind);
 [[nodiscard]] std::optional<IncidentKind> incident_kind_of(std::string_view name);
 
@@ -43,6 +43,9 @@ struct Incident {
   std::uint32_t first_revision = 0;  ///< of the map that the recording begins on: map.yaml
   std::string first_map;             ///< map.file of the settings
   std::string version;
+  std::string lacks{};  ///< what of its recording is missing, and why: one line; empty: nothing that is known
+
+  [[nodiscard]] bool is_complete() const { return to && lacks.empty(); }
 };
 
 // What its folder holds.
@@ -55,6 +58,8 @@ inline constexpr const char* kIncidentFacts = "incident.json";
 inline constexpr const char* kIncidentPin = "pinned";
 
 [[nodiscard]] std::string json_text(const Incident& incident);
+/// Throws std::runtime_error with what is wrong where that is no such text.
+[[nodiscard]] Incident incident_of(const std::string& json_text);
 /// Throws std::runtime_error "FILE: …" where the folder holds no incident.
 [[nodiscard]] Incident read_incident(const std::filesystem::path& folder);
 /// The page for people: what happened, when, where, on which revision, what is kept and what to do.

@@ -10,7 +10,6 @@
 #include "core/files/replace_file.hpp"
 #include "core/utc_text.hpp"
 #include "daemon/incidents/incident_list.hpp"
-#include "daemon/settings/settings_documents.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -31,6 +30,11 @@ std::string free_name(const fs::path& parent, const IncidentEvent& event) {
   }
 }
 
+/// Nothing else has befallen it, and nobody has asked for it.
+bool is_end(const StoredIncident& one) {
+  return !one.is_pinned && one.incident.events.front().kind == IncidentKind::kDaemonEnded;
+}
+
 }  // namespace
 
 IncidentFolder::IncidentFolder(const fs::path& parent, Content content) : incident_{std::move(content.incident)} {
@@ -41,17 +45,16 @@ IncidentFolder::IncidentFolder(const fs::path& parent, Content content) : incide
   fs::create_directories(draft, error);
   if (error) throw std::runtime_error(draft.string() + ": cannot be made: " + error.message());
   try {
+    write_page(draft, incident_);  // first: what a daemon that is killed meanwhile was about to keep
     const fs::path recording = draft / kIncidentRecording;
     const fs::path part = recording.string() + ".part";
     writer_ = std::make_unique<drivers::port::ByteLogWriter>(part, content.bauds);
     content.records([this](const drivers::port::ByteRecord& record) { writer_->write(record); });
-    writer_->flush();
+    incident_.to ? writer_->close() : writer_->flush();
     move_into_place(part, recording);
     write_grid(*content.map, draft / kIncidentMap);
-    replace_file(draft / kIncidentSettings, settings_as_yaml(content.settings));
+    replace_file(draft / kIncidentSettings, content.settings);
     replace_file(draft / kIncidentLog, content.log);
-    folder_ = draft;
-    write_page();
     move_into_place(draft, parent / incident_.name);
   } catch (const std::runtime_error&) {
     writer_.reset();
@@ -61,22 +64,30 @@ IncidentFolder::IncidentFolder(const fs::path& parent, Content content) : incide
   folder_ = parent / incident_.name;
 }
 
-void IncidentFolder::write_page() const {
-  replace_file(folder_ / kIncidentFacts, json_text(incident_));
-  replace_file(folder_ / kIncidentWords, words_of(incident_));
+void write_page(const fs::path& folder, const Incident& incident) {
+  replace_file(folder / kIncidentFacts, json_text(incident));
+  replace_file(folder / kIncidentWords, words_of(incident));
 }
 
 void IncidentFolder::add(const IncidentEvent& event) {
   if (incident_.events.size() >= kMostEvents) return;
   incident_.events.push_back(event);
-  write_page();
+  write_page(folder_, incident_);
 }
 
 void IncidentFolder::finish(Timestamp to, const std::string& log) {
   writer_->close();
   incident_.to = to;
   replace_file(folder_ / kIncidentLog, log);
-  write_page();
+  write_page(folder_, incident_);
+}
+
+std::optional<fs::path> draft_in(const fs::path& parent) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(parent, error)) {
+    if (entry.path().filename().string().starts_with(kDraftHead)) return entry.path();
+  }
+  return std::nullopt;
 }
 
 void remove_drafts(const fs::path& parent) {
@@ -89,6 +100,14 @@ void remove_drafts(const fs::path& parent) {
   for (const fs::path& folder : left) fs::remove_all(folder, error);
 }
 
+std::error_code remove_at_once(const fs::path& folder) {
+  const fs::path gone = folder.parent_path() / (std::string(kGoneHead) + folder.filename().string());
+  std::error_code error;
+  fs::rename(folder, gone, error);
+  if (!error) fs::remove_all(gone, error);
+  return error;
+}
+
 std::vector<std::string> within_limits(const IncidentSettings& settings, const std::string& newest) {
   std::vector<StoredIncident> all = incidents_in(settings.folder);
   std::vector<std::string> lines;
@@ -97,19 +116,20 @@ std::vector<std::string> within_limits(const IncidentSettings& settings, const s
                            [](std::uint64_t sum, const StoredIncident& one) { return sum + one.bytes; });
   };
   for (;;) {
+    const auto ends = std::count_if(all.begin(), all.end(), is_end);
+    const bool too_many_ends = static_cast<std::size_t>(ends) > kMostEnds;
     const bool too_many = all.size() > settings.max_count;
     const bool too_large = static_cast<double>(bytes()) > settings.max_gigabytes * 1e9;
     const auto oldest = std::find_if(all.begin(), all.end(), [&](const StoredIncident& one) {
-      return !one.is_pinned && one.incident.name != newest;
+      return !one.is_pinned && one.incident.name != newest && (!too_many_ends || is_end(one));
     });
-    if ((!too_many && !too_large) || oldest == all.end()) return lines;
-    // Out of the way in one step: nobody meets half of it.
-    const fs::path gone = oldest->folder.parent_path() / (std::string(kGoneHead) + oldest->incident.name);
-    std::error_code error;
-    fs::rename(oldest->folder, gone, error);
-    if (!error) fs::remove_all(gone, error);
+    if ((!too_many_ends && !too_many && !too_large) || oldest == all.end()) return lines;
+    const std::error_code error = remove_at_once(oldest->folder);
     lines.push_back("incident " + oldest->incident.name + (error ? " cannot be removed: " + error.message() : " goes") +
-                    ": there are more than " + (too_many ? "incidents.max_count" : "incidents.max_gigabytes"));
+                    ": there are more than " +
+                    (too_many_ends ? std::to_string(kMostEnds) + " ends of the daemon"
+                     : too_many    ? "incidents.max_count"
+                                   : "incidents.max_gigabytes"));
     all.erase(oldest);
   }
 }

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "core/grid/occupancy_grid.hpp"
@@ -21,8 +23,8 @@ class IncidentFolder {
  public:
   using TakeRecord = std::function<void(const drivers::port::ByteRecord&)>;
   struct Content {
-    Incident incident;  ///< its name is made here
-    Settings settings;  ///< to replay it with
+    Incident incident;     ///< its name is made here; with `to` where nothing will come after `records`
+    std::string settings;  ///< YAML: to replay it with
     std::shared_ptr<const OccupancyGrid> map;
     drivers::port::FirstBauds bauds;
     std::string log;
@@ -43,15 +45,24 @@ class IncidentFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
  private:
-  void write_page() const;
-
   Incident incident_;
   std::filesystem::path folder_;
   std::unique_ptr<drivers::port::ByteLogWriter> writer_;
 };
 
-/// What a daemon that was killed has left half written.
+/// The incident's facts and its page in words, each replaced whole. Throws std::runtime_error naming the file.
+void write_page(const std::filesystem::path& folder, const Incident& incident);
+
+/// An incident that was not whole when the daemon was killed; nothing: none.
+[[nodiscard]] std::optional<std::filesystem::path> draft_in(const std::filesystem::path& parent);
+/// Nobody meets half of it: it goes out of the way first. Nothing where it went, else why not.
+std::error_code remove_at_once(const std::filesystem::path& folder);
+
+/// What a daemon that was killed has left half written, or half removed.
 void remove_drafts(const std::filesystem::path& parent);
+
+/// Ends of the daemon that are kept at most, so that one that cannot live drives out nothing else.
+inline constexpr std::size_t kMostEnds = 10;
 
 /// The oldest incidents that are not pinned go until the others are within the limits; `newest` stays in any case. A
 /// line for each that has gone.

@@ -2,10 +2,14 @@
 #include "daemon/incidents/incident_keeper.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "daemon/incidents/ended_run.hpp"
+#include "daemon/incidents/left_ring.hpp"
 #include "daemon/records/journal.hpp"
+#include "daemon/settings/settings_documents.hpp"
 #include "daemon/steps/run_begin.hpp"
 #include "daemon/telemetry/version.hpp"
 
@@ -17,16 +21,14 @@ using drivers::port::ByteRecord;
 constexpr double kLongestSegmentS = 15.0;  // where no checkpoint comes: no scan is localized
 constexpr double kRingS = IncidentKeeper::kBeforeS + kCheckpointPeriodS;
 constexpr double kFlushPeriodS = 1.0;
+constexpr double kLeftPeriodS = 60.0;
+constexpr double kRingFlushPeriodS = 0.1;  // what a killed daemon loses
 
 ByteRecord note_at(Timestamp stamp, std::string_view note) {
   ByteRecord record;
   record.stamp = stamp;
   record.note = note;
   return record;
-}
-
-std::filesystem::path ring_folder(const Settings& settings) {
-  return std::filesystem::path(settings.incidents.folder) / ".ring";
 }
 
 }  // namespace
@@ -52,11 +54,13 @@ void IncidentKeeper::begin_ring(Timestamp now) {
   const std::filesystem::path folder = options_.settings.incidents.folder;
   std::filesystem::create_directories(folder);
   if (!lock_) lock_ = lock_of_folder(folder);
+  if (!std::exchange(is_left_aside_, true)) set_left_aside(folder);
   remove_drafts(folder);
   const bool is_start = now == options_.began;
-  ring_.emplace(ring_folder(options_.settings), kRingS);
+  ring_.emplace(folder / kRingFolder, kRingS);
   try {
-    ring_->begin_segment(now, so_far_, is_start ? nullptr : without_pose());
+    write_run_facts(ring_->folder(), options_.settings, *options_.map);
+    begin_ring_segment(now, is_start ? nullptr : without_pose());
     if (is_start) {
       for (const std::string& note : options_.first_notes) ring_->write(note_at(now, note));
     }
@@ -98,7 +102,17 @@ void IncidentKeeper::hear(std::shared_ptr<const Checkpoint> checkpoint, Timestam
 
 void IncidentKeeper::begin_segment(Timestamp now, std::shared_ptr<const Checkpoint> checkpoint) {
   if (!ring_) return;
-  (void)output_.attempt(now, [&] { ring_->begin_segment(now, so_far_, std::move(checkpoint)); });
+  (void)output_.attempt(now, [&] { begin_ring_segment(now, std::move(checkpoint)); });
+}
+
+void IncidentKeeper::begin_ring_segment(Timestamp now, std::shared_ptr<const Checkpoint> checkpoint) {
+  const IncidentEvent none{IncidentKind::kDaemonEnded, now, ""};
+  std::vector<ByteRecord> beginning{note_at(now, facts_note(begun_incident(none, now, checkpoint.get())))};
+  if (checkpoint) {
+    const auto notes = part_notes(options_.settings, *checkpoint);
+    for (ByteRecord& record : so_far_.beginning(notes, now)) beginning.push_back(std::move(record));
+  }
+  ring_->begin_segment(now, so_far_, std::move(checkpoint), beginning);
 }
 
 /// What was known last of the map and of the wheels, and no pose.
@@ -139,12 +153,13 @@ void IncidentKeeper::raise(IncidentEvent event, Timestamp now) {
   for (const std::string& line : within_limits(options_.settings.incidents, open_->incident().name)) hooks_.log(line);
 }
 
-Incident IncidentKeeper::begun_incident(const IncidentEvent& event, const SegmentRing::Segment& from) const {
+Incident IncidentKeeper::begun_incident(const IncidentEvent& event, Timestamp from,
+                                        const Checkpoint* checkpoint) const {
   Incident incident;
   incident.events = {event};
-  incident.from = from.began;
-  incident.begins_in_mid_run = from.checkpoint != nullptr;
-  incident.first_revision = from.checkpoint ? from.checkpoint->pose.revision : options_.revision;
+  incident.from = from;
+  incident.begins_in_mid_run = checkpoint != nullptr;
+  incident.first_revision = checkpoint ? checkpoint->pose.revision : options_.revision;
   incident.revision = newest_ ? newest_->revision : options_.revision;
   incident.first_map = options_.settings.map.file;
   incident.version = version_text();
@@ -166,22 +181,56 @@ void IncidentKeeper::open_incident(const IncidentEvent& event) {
     ring_->read_from(from, take);
   };
   open_.emplace(options_.settings.incidents.folder,
-                IncidentFolder::Content{.incident = begun_incident(event, from),
-                                        .settings = is_part ? settings_of_a_part(options_.settings) : options_.settings,
-                                        .map = is_part ? from.checkpoint->map : options_.map,
-                                        .bauds = from.so_far.bauds(),
-                                        .log = log_.since(from.began),
-                                        .records = records});
+                IncidentFolder::Content{
+                    .incident = begun_incident(event, from.began, from.checkpoint.get()),
+                    .settings = settings_as_yaml(is_part ? settings_of_a_part(options_.settings) : options_.settings),
+                    .map = is_part ? from.checkpoint->map : options_.map,
+                    .bauds = from.so_far.bauds(),
+                    .log = log_.since(from.began),
+                    .records = records});
 }
 
 void IncidentKeeper::look(Timestamp now) {
+  if (is_left_aside_ && !is_left_kept_ && now >= left_due_) keep_left_run(now);
   for (IncidentEvent& event : run_watch_.observe(telemetry_, now)) raise(std::move(event), now);
   if (open_ && now >= until_) finish(now);
   if (ring_ && !ring_->is_empty() && seconds(now - ring_->newest().began) > kLongestSegmentS)
     begin_segment(now, without_pose());
+  flush(now);
+}
+
+void IncidentKeeper::flush(Timestamp now) {
+  if (seconds(now - last_ring_flush_) < kRingFlushPeriodS) return;
+  last_ring_flush_ = now;
+  if (ring_ && !output_.attempt(now, [this] { ring_->flush(); })) has_gap_ = true;
   if (seconds(now - last_flush_) < kFlushPeriodS) return;
   last_flush_ = now;
   if (open_) (void)output_.attempt(now, [this] { open_->flush(); });
+  if (!ring_ || ring_->is_empty()) return;
+  (void)output_.attempt(now, [&] {
+    const IncidentEvent none{IncidentKind::kDaemonEnded, now, ""};
+    write_newest(ring_->folder(), begun_incident(none, now, nullptr), log_.since(ring_->oldest().began));
+  });
+}
+
+/// Where that fails this run's own ring goes on.
+void IncidentKeeper::keep_left_run(Timestamp now) {
+  const IncidentSettings& settings = options_.settings.incidents;
+  std::string newest;
+  try {
+    keep_left(settings.folder, open_ ? open_->incident().name : "", [&](const KeptEnd& kept) {
+      hooks_.warn(kept.line);
+      newest = kept.name;
+    });
+    is_left_kept_ = true;
+  } catch (const std::runtime_error& why) {
+    if (left_due_ == Timestamp{})
+      hooks_.warn(std::string("what the daemon before has left is not kept yet, and tried again each minute: ") +
+                  why.what());
+    left_due_ = now + duration_from_seconds(kLeftPeriodS);
+  }
+  if (newest.empty()) return;
+  for (const std::string& line : within_limits(settings, newest)) hooks_.log(line);
 }
 
 void IncidentKeeper::finish(Timestamp now) {
@@ -193,6 +242,7 @@ void IncidentKeeper::finish(Timestamp now) {
 void IncidentKeeper::close(Timestamp now) {
   output_.hurry();
   if (open_) finish(now);
+  if (ring_) ring_->remove();
   ring_.reset();
 }
 

@@ -56,10 +56,14 @@ class IncidentKeeper : public RunListener {
   /// Throws std::runtime_error where the disk is full.
   void write(const drivers::port::ByteRecord& record);
   void begin_segment(Timestamp now, std::shared_ptr<const Checkpoint> checkpoint);
+  void begin_ring_segment(Timestamp now, std::shared_ptr<const Checkpoint> checkpoint);
   void raise(IncidentEvent event, Timestamp now);
-  [[nodiscard]] Incident begun_incident(const IncidentEvent& event, const SegmentRing::Segment& from) const;
+  [[nodiscard]] Incident begun_incident(const IncidentEvent& event, Timestamp from, const Checkpoint* checkpoint) const;
   void open_incident(const IncidentEvent& event);
   void finish(Timestamp now);
+  void flush(Timestamp now);
+  /// What a daemon before this one has left: told, and kept.
+  void keep_left_run(Timestamp now);
   [[nodiscard]] std::shared_ptr<const Checkpoint> without_pose() const;
 
   Options options_;
@@ -77,6 +81,10 @@ class IncidentKeeper : public RunListener {
   std::optional<IncidentFolder> open_;
   Timestamp until_;  // of the open one
   Timestamp last_flush_;
+  Timestamp last_ring_flush_;
+  bool is_left_aside_ = false;
+  bool is_left_kept_ = false;
+  Timestamp left_due_{};  // the next attempt to keep it
   bool has_gap_ = false;
 };
 

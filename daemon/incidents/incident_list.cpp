@@ -49,7 +49,7 @@ Json listed(const StoredIncident& stored) {
             {"revision", incident.revision},
             {"bytes", stored.bytes},
             {"pinned", stored.is_pinned},
-            {"complete", incident.to.has_value()}};
+            {"complete", incident.is_complete()}};
   if (const auto& pose = incident.map_from_robot)
     json["pose"] = {{"x_m", pose->x}, {"y_m", pose->y}, {"heading_deg", degrees(pose->theta)}};
   return json;

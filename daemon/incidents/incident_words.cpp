@@ -29,6 +29,10 @@ const char* what_to_do(IncidentKind kind) {
              "wander.";
     case IncidentKind::kDeviceFault:
       return "Look at the device, its cable and its power. The log tells what it said last.";
+    case IncidentKind::kDaemonEnded:
+      return "See whether the machine lost its power, whether the kernel ended the process for its memory "
+             "(journalctl -k) or the watchdog did (journalctl -u deltamap), and whether it crashed (coredumpctl list "
+             "deltamapd). The service has started again by itself.";
   }
   return "";
 }
@@ -61,13 +65,14 @@ std::string kept_text(const Incident& incident) {
                         "%s holds every byte of both devices from %.0f s before the first event to %.0f s after it.",
                         kIncidentRecording, seconds(event - incident.from), seconds(*incident.to - event));
   } else {
-    (void)std::snprintf(text, sizeof text,
-                        "%s holds every byte of both devices from %.0f s before the first event on. This page is "
-                        "written again when half a minute has passed; where this sentence stays, the daemon has ended "
-                        "before.",
-                        kIncidentRecording, seconds(event - incident.from));
+    (void)std::snprintf(
+        text, sizeof text,
+        "%s holds every byte of both devices from %.0f s before the first event on. This page is "
+        "written again when half a minute has passed, or at the next start of a daemon that ended before.",
+        kIncidentRecording, seconds(event - incident.from));
   }
-  return std::string(text) +
+  const std::string lacks = incident.lacks.empty() ? "" : " It is not complete: " + incident.lacks + ".";
+  return text + lacks +
          (incident.begins_in_mid_run
               ? " It begins in mid-run: a replay begins with the pose, its deviation, the map and what had proven "
                 "stable by then, and decides by itself; votes on changes begin anew.\n"

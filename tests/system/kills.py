@@ -84,11 +84,12 @@ class Trial:
         until(lambda: (self.out / "sim/laser").exists(), "no simulator")
         self.cable = cable(self.out / "sim/robot", self.out / "robot")
         self.daemon = None
+        self.settings = {}  # others than those of each start
 
     def start(self):
         pose = "null" if self.daemon else "[1,2,0]"  # later it is where the run before has kept it
         settings = {"localization.initial_pose": pose, "robot.port": self.out / "robot", "laser.port": self.out / "sim/laser", "map.file": self.out / "m0.yaml",
-                    "map.store": self.out / "store.sqlite", "control.socket": self.out / "ctl.sock"}
+                    "map.store": self.out / "store.sqlite", "control.socket": self.out / "ctl.sock", **self.settings}
         self.daemon = subprocess.Popen([self.bin / "deltamapd", "--config", ROOT / "config/simulation.yaml",
                                         *set_options(settings)], cwd=ROOT, stderr=open(self.out / "daemon.log", "a"))
 
