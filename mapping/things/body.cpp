@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/things/assumed.hpp"
 #include "mapping/things/outline_fit.hpp"
 
 namespace deltamap::mapping::things {
@@ -20,6 +21,8 @@ constexpr double kOnSidesShare = 0.85;  // of the surfaces of both, on the sides
 constexpr double kLineGap_m = 0.5;      // between two pieces of one face
 constexpr double kShownShare = 0.5;     // of the sum of two sides of a rectangle, by two of its faces
 
+constexpr int kFreeInside = 4;        // cells that were found free: more than stray ones
+constexpr int kLooksThrough = 2;      // scans: more than one at a pose that was a little off
 constexpr double kClosedShare = 0.6;  // of the rectangle: its own cells, with those that it closes off
 
 int sides_seen(const Outline& outline) {
@@ -61,11 +64,25 @@ void stand_at(Body& body, const Outline& now, bool has_lost_much, const ThingsPa
       (thing.at->centre - now.centre).norm() > kLeastShift_m) {
     if (!thing.from) thing.from = thing.at;
     thing.kind = ThingKind::kMoved;
+    body.is_contradicted = false;
   } else if (thing.at && body.told && has_lost_much && thing.kind == ThingKind::kAppeared &&
              sides_seen(*thing.at) >= kWholeSides && !is_same_size(*thing.at, now, kOtherShape_m)) {
     thing.kind = ThingKind::kChanged;
   }
   thing.at = now;
+}
+
+bool assumes(const Body& body) {
+  return body.thing.at &&
+         std::find(body.thing.at->assumed.begin(), body.thing.at->assumed.end(), true) != body.thing.at->assumed.end();
+}
+
+/// Cells within it that this revision has found free.
+bool shows_free_inside(const Outline& outline, const ChangedMap& step) {
+  const auto inside = std::count_if(step.changes.begin(), step.changes.end(), [&](const CellChange& change) {
+    return change.after == CellState::kFree && is_deep_inside(outline, step.map.geometry().centre_of(change.cell));
+  });
+  return inside >= kFreeInside;
 }
 
 void leave(Body& body, const ChangedMap& step) {
@@ -98,6 +115,7 @@ void judge_standing(Body& body, const ChangedMap& step, const ThingsParams& para
   }
   const bool has_lost_much = static_cast<double>(body.come.count()) < 0.85 * static_cast<double>(body.written);
   stand_at(body, outline_of_come(cells), has_lost_much, params);
+  if (params.assumes_sides && !body.is_contradicted) body.thing.at->assumed = assumed_sides(cells, *body.thing.at);
 }
 
 void judge_gone(Body& body, const ChangedMap& step) {
@@ -119,7 +137,7 @@ void judge_gone(Body& body, const ChangedMap& step) {
 bool differ(const std::optional<Outline>& a, const std::optional<Outline>& b, double step_m) {
   if (!a || !b) return a.has_value() != b.has_value();
   return (a->centre - b->centre).norm() > step_m || std::abs(a->length_m - b->length_m) > step_m ||
-         std::abs(a->width_m - b->width_m) > step_m;
+         std::abs(a->width_m - b->width_m) > step_m || a->assumed != b->assumed;
 }
 
 }  // namespace
@@ -167,6 +185,23 @@ void judge(Body& body, const ChangedMap& step, const ThingsParams& params) {
   if (body.thing.revisions.empty() || body.thing.revisions.back() != step.number)
     body.thing.revisions.push_back(step.number);
   if (body.thing.revisions.size() > Thing::kMostRevisions) body.thing.revisions.erase(body.thing.revisions.begin());
+}
+
+void contradict(Body& body) {
+  body.thing.at->assumed = {};
+  body.is_contradicted = true;
+  body.is_touched = true;
+}
+
+void contradict_by(const ChangedMap& step, Body& body) {
+  if (assumes(body) && !step.takes_back && shows_free_inside(*body.thing.at, step)) contradict(body);
+}
+
+bool look_at(Body& body, const TrackedScan& tracked) {
+  if (!assumes(body) || !goes_through(tracked, *body.thing.at)) return false;
+  if (++body.looks_through < kLooksThrough) return false;
+  contradict(body);
+  return true;
 }
 
 bool is_tellable(const Body& body, const ThingsParams& params) {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/grid/grid_patch.hpp"
+#include "core/messages.hpp"
 #include "core/time.hpp"
 #include "mapping/things/thing.hpp"
 #include "mapping/things/thing_cells.hpp"
@@ -23,6 +24,7 @@ struct ThingsParams {
   double quiet_s = 180.0;                   ///< a face that has not grown for so long is whole, > 0
   double tentative_s = 600.0;               ///< cells too few to be told are forgotten after that, > 0
   std::size_t most_cell_bytes = 1'000'000;  ///< of followed bodies; the longest quiet are followed no more
+  bool assumes_sides = true;                ///< that nobody has seen, where those seen fix the rectangle
   std::size_t most_things = 2000;           ///< listed; the oldest of what has gone or was taken back are left out
 };
 
@@ -46,11 +48,13 @@ struct Body {
   ThingCells gone;                  ///< what stood here and does not, and the floor that this has shown
   std::size_t most_faces_come = 0;  ///< cells of its surface, at most so far
   std::size_t most_faces_gone = 0;
-  std::size_t written = 0;    ///< cells ever owned
-  Timestamp grown;            ///< when its surface last grew, or it went
-  std::optional<Thing> told;  ///< as it was told last; nothing: not yet
-  bool is_touched = false;    ///< by the revision that is being taken
-  bool has_grown = false;     ///< by the same
+  std::size_t written = 0;       ///< cells ever owned
+  Timestamp grown;               ///< when its surface last grew, or it went
+  std::optional<Thing> told;     ///< as it was told last; nothing: not yet
+  bool is_touched = false;       ///< by the revision that is being taken
+  bool has_grown = false;        ///< by the same
+  int looks_through = 0;         ///< scans with beams through what is assumed of it
+  bool is_contradicted = false;  ///< by them, or by a revision: nothing is assumed of it where it stands
 
   [[nodiscard]] ThingCells& cells(Side side) { return side == Side::kCome ? come : gone; }
   [[nodiscard]] const ThingCells& cells(Side side) const { return side == Side::kCome ? come : gone; }
@@ -63,8 +67,13 @@ struct Body {
 /// Takes the cells into the body.
 void own(Body& body, std::span<const CellChange> cells, Side side);
 
-/// What the map now says of its outline and its kind.
+/// What the map now says of its outline, of what is assumed of that, and of its kind.
 void judge(Body& body, const ChangedMap& step, const ThingsParams& params);
+
+/// Where the revision finds cells free inside what is assumed of it, nothing is assumed of it any more while it stands.
+void contradict_by(const ChangedMap& step, Body& body);
+/// So do beams that go through it, of several scans. True: they have done so just now.
+[[nodiscard]] bool look_at(Body& body, const TrackedScan& tracked);
 
 /// Whether the surfaces of both are sides of one rectangle that is no larger than what they show of it: the front and a
 /// side of one body, that were seen one after the other. Bodies beside each other are not.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/counted.hpp"
+
 namespace deltamap::mapping::things {
 namespace {
 
@@ -27,7 +29,10 @@ std::string place_text(const Outline& outline) {
 std::string body_text(const Outline& outline) {
   char size[48];
   (void)std::snprintf(size, sizeof size, " of %.1f × %.1f m", outline.length_m, outline.width_m);
-  return likeness_of(outline) + std::string{size};
+  const auto assumed = std::count(outline.assumed.begin(), outline.assumed.end(), true);
+  const std::string sides =
+      assumed == 0 ? "" : " (" + counted(static_cast<std::uint64_t>(assumed), "side") + " assumed)";
+  return likeness_of(outline) + std::string{size} + sides;
 }
 
 }  // namespace
@@ -37,6 +42,13 @@ std::array<Point2, 4> corners(const Outline& outline) {
   const double x = 0.5 * outline.length_m;
   const double y = 0.5 * outline.width_m;
   return {map * Point2{x, -y}, map * Point2{x, y}, map * Point2{-x, y}, map * Point2{-x, -y}};
+}
+
+bool is_closed(const Outline& outline) {
+  for (std::size_t side = 0; side < outline.seen.size(); ++side) {
+    if (!outline.seen[side] && !outline.assumed[side]) return false;
+  }
+  return true;
 }
 
 bool is_inside(const Outline& outline, const Point2& place, double margin_m) {

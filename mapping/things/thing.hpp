@@ -25,12 +25,16 @@ struct Outline {
   double width_m = 0.0;      ///< <= length_m
   double heading_rad = 0.0;  ///< [0, π): a rectangle does not tell its front from its back
   std::array<bool, 4> seen{};
+  /// Not seen, but taken to be there: the seen ones are sides of one rectangle. Of what stands there alone.
+  std::array<bool, 4> assumed{};
 
   friend bool operator==(const Outline&, const Outline&) = default;
 };
 
 /// Counter-clockwise, from the corner of sides 3 and 0 on.
 [[nodiscard]] std::array<Point2, 4> corners(const Outline& outline);
+/// Every side is seen or assumed: its inside is solid.
+[[nodiscard]] bool is_closed(const Outline& outline);
 /// Within the rectangle, grown by a margin (m) on every side.
 [[nodiscard]] bool is_inside(const Outline& outline, const Point2& place, double margin_m);
 /// Area that both cover, of the smaller one's, by samples; [0, 1].
@@ -66,7 +70,7 @@ struct Thing {
   [[nodiscard]] const Outline& outline() const { return at ? *at : *from; }
 };
 
-/// "container-like body of 2.4 × 2.5 m appeared at 12.30, 4.05"
+/// "container-like body of 2.4 × 2.5 m (2 sides assumed) appeared at 12.30, 4.05"
 [[nodiscard]] std::string words_of(const Thing& thing);
 
 }  // namespace deltamap::mapping::things

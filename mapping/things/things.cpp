@@ -60,6 +60,7 @@ std::vector<ThingEvent> Things::take(const ChangedMap& changed) {
   const Step step{changed, map_before(changed), gap_cells};
   for (Body& body : bodies_) body.is_touched = body.has_grown = false;
   joined_.clear();
+  newest_revision_ = changed.number;
   const Cells left = restored(step);
   for (const Side side : {Side::kGone, Side::kCome}) {
     add_surfaces(step, left, side);
@@ -182,6 +183,7 @@ void Things::add_insides(const GridGeometry& geometry, const Cells& changes, Sid
 
 std::vector<ThingEvent> Things::told(const Step& step) {
   for (Body& body : bodies_) {
+    contradict_by(step.now, body);
     if (body.is_touched) judge(body, step.now, params_);
   }
   join_faces(step.now);
@@ -196,6 +198,17 @@ std::vector<ThingEvent> Things::told(const Step& step) {
     if (body.told) ++body.thing.updates;
     body.told = body.thing;
     events.push_back({body.thing, step.now.number, step.now.time, is_new});
+  }
+  return events;
+}
+
+std::vector<ThingEvent> Things::look(const TrackedScan& tracked) {
+  std::vector<ThingEvent> events;
+  for (Body& body : bodies_) {
+    if (!body.told || !look_at(body, tracked)) continue;
+    ++body.thing.updates;
+    body.told = body.thing;
+    events.push_back({body.thing, newest_revision_, tracked.scan.time, false});
   }
   return events;
 }

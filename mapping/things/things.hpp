@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns the revisions of a map into things: cells that have come or gone are grouped into bodies, which are followed
 // from revision to revision, so that one change of the world is one thing, told once and updated. The state is a
-// function of the revisions in their order and of nothing else. Costs what a revision changes; memory is bounded.
+// function of the revisions in their order; scans between them only take back what is assumed of a thing. Costs what a
+// revision changes; memory is bounded.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,10 @@ class Things {
 
   /// In the order of the bodies' beginnings. The revisions must come in order and be of one geometry.
   std::vector<ThingEvent> take(const ChangedMap& step);
+
+  /// A scan whose pose holds, between revisions: what it takes back of what was assumed. The same scans must come at
+  /// the same place among the revisions.
+  std::vector<ThingEvent> look(const TrackedScan& tracked);
 
   /// Every thing that was told, in the order of their ids.
   [[nodiscard]] std::vector<Thing> all() const;
@@ -69,6 +74,7 @@ class Things {
   std::list<Body> bodies_;     // in the order in which they began
   std::vector<Thing> joined_;  // by the revision that is being taken, after they had been told
   std::uint32_t newest_id_ = 0;
+  std::uint32_t newest_revision_ = 0;
   std::uint64_t corrections_ = 0;
   std::uint64_t forgotten_ = 0;
 };

@@ -59,6 +59,7 @@ void take_cells(Body& into, const Body& part) {
   into.written += part.written;
   into.grown = std::max(into.grown, part.grown);
   into.has_grown = into.has_grown || part.has_grown;
+  into.is_contradicted = into.is_contradicted || part.is_contradicted;
   into.is_touched = true;
 }
 
