@@ -6,14 +6,20 @@
 #include <set>
 #include <utility>
 
+#include "core/grid/near_occupied.hpp"
+
 namespace deltamap::mapping::things {
 namespace {
 
-constexpr int kFixingSides = 2;           // that fix a rectangle
-constexpr double kOfOneRectangle = 0.85;  // of the surface, on its sides
-constexpr double kDeep_m = 0.2;           // inside of a side: beyond pose error and a surface drawn a cell beside
-constexpr double kThrough_m = 0.2;        // of a beam, deep inside
-constexpr int kBeamsThrough = 3;          // of one scan; fewer are stray
+constexpr int kFixingSides = 2;                        // that fix a rectangle
+constexpr double kLeastSide_m = 0.6;                   // a shorter side may be the end of a face that was drawn twice
+constexpr double kOfOneRectangle = 0.85;               // of the surface, on its sides
+constexpr std::array kBeyondEnd_cells{2.0, 3.0, 4.0};  // where a side that ends leaves open floor
+constexpr double kAlongShare = 0.8;                    // of a side, along a surface
+constexpr int kSurfaceNear = 2;                        // cells between the two
+constexpr double kDeep_m = 0.2;     // inside of a side: beyond pose error and a surface drawn a cell beside
+constexpr double kThrough_m = 0.2;  // of a beam, deep inside
+constexpr int kBeamsThrough = 3;    // of one scan; fewer are stray
 
 /// How much of the way from one place to the other lies within the rectangle, shrunk by kDeep_m on every side.
 double length_inside_m(const Outline& outline, const Point2& from, const Point2& to) {
@@ -37,13 +43,44 @@ double length_inside_m(const Outline& outline, const Point2& from, const Point2&
   return std::max(0.0, leaves - enters) * way.norm();
 }
 
+/// A seen side leads to it, and the floor beyond that one's end is free.
+bool is_where_seen_ones_end(const Outline& outline, std::size_t side, const OccupancyGrid& map) {
+  const auto corner = corners(outline);
+  const auto ends_free = [&](std::size_t seen_side, std::size_t at, std::size_t other_end) {
+    if (!outline.seen[seen_side]) return false;
+    const Point2 onward = (corner[at] - corner[other_end]).normalized() * map.resolution_m();
+    return std::all_of(kBeyondEnd_cells.begin(), kBeyondEnd_cells.end(), [&](double cells) {
+      return map.at(map.geometry().cell_at(corner[at] + cells * onward)) == CellState::kFree;
+    });
+  };
+  return ends_free((side + 3) % 4, side, (side + 3) % 4) || ends_free((side + 1) % 4, (side + 1) % 4, (side + 2) % 4);
+}
+
+/// Most of it lies on or before a surface.
+bool is_along_surface(const Outline& outline, std::size_t side, const OccupancyGrid& map) {
+  const auto corner = corners(outline);
+  const Point2 along = corner[(side + 1) % 4] - corner[side];
+  const int steps = std::max(1, static_cast<int>(along.norm() / map.resolution_m()));
+  int covered = 0;
+  for (int i = 0; i < steps; ++i) {
+    const Cell cell = map.geometry().cell_at(corner[side] + (i + 0.5) / steps * along);
+    covered += has_occupied_within(map, cell, kSurfaceNear) ? 1 : 0;
+  }
+  return covered >= kAlongShare * steps;
+}
+
 }  // namespace
 
-std::array<bool, 4> assumed_sides(const BodyCells& cells, const Outline& outline) {
+std::array<bool, 4> assumed_sides(const BodyCells& cells, const Outline& outline, const OccupancyGrid& map) {
   std::array<bool, 4> assumed{};
-  const bool is_fixed = std::count(outline.seen.begin(), outline.seen.end(), true) >= kFixingSides &&
-                        outline.width_m >= kOneFace_m && share_on_sides(cells, outline) >= kOfOneRectangle;
-  for (std::size_t side = 0; side < assumed.size(); ++side) assumed[side] = is_fixed && !outline.seen[side];
+  if (std::count(outline.seen.begin(), outline.seen.end(), true) < kFixingSides || outline.width_m < kLeastSide_m ||
+      share_on_sides(cells, outline) < kOfOneRectangle)
+    return assumed;
+  for (std::size_t side = 0; side < assumed.size(); ++side) {
+    if (!outline.seen[side] && !is_where_seen_ones_end(outline, side, map) && !is_along_surface(outline, side, map))
+      return {};
+    assumed[side] = !outline.seen[side];
+  }
   return assumed;
 }
 

@@ -15,8 +15,10 @@
 
 namespace deltamap::mapping::things {
 
-/// Those that were not seen, where two or three that were fix the rectangle; else none.
-[[nodiscard]] std::array<bool, 4> assumed_sides(const BodyCells& cells, const Outline& outline);
+/// Those that were not seen, where two or three that were fix the rectangle: they end on open floor, or a
+/// surface of the map lies along those that were not. Who is seen beside a neighbour may go on behind it: then none.
+[[nodiscard]] std::array<bool, 4> assumed_sides(const BodyCells& cells, const Outline& outline,
+                                                const OccupancyGrid& map);
 
 /// Well within the outline: neither a surface drawn a cell beside nor the error of a pose reaches so far.
 [[nodiscard]] bool is_deep_inside(const Outline& outline, const Point2& place);

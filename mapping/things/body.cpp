@@ -90,6 +90,8 @@ void leave(Body& body, const ChangedMap& step) {
   thing.kind = step.takes_back ? ThingKind::kTakenBack : ThingKind::kGone;
   thing.from = thing.at;
   thing.at.reset();
+  body.freed.reset();
+  body.is_pushed = false;
   body.gone.clear();
   body.most_faces_gone = 0;
   body.grown = step.time;
@@ -106,6 +108,7 @@ void judge_standing(Body& body, const ChangedMap& step, const ThingsParams& para
     body.thing.at.reset();
     return;
   }
+  if (body.is_pushed) return;
   const bool is_whole = static_cast<double>(faces) >= kWholeShare * static_cast<double>(most);
   if (faces == 0 || (!is_whole && !body.has_grown && body.thing.at)) return;
   if (body.told && !body.thing.at) {
@@ -115,16 +118,19 @@ void judge_standing(Body& body, const ChangedMap& step, const ThingsParams& para
   }
   const bool has_lost_much = static_cast<double>(body.come.count()) < 0.85 * static_cast<double>(body.written);
   stand_at(body, outline_of_come(cells), has_lost_much, params);
-  if (params.assumes_sides && !body.is_contradicted) body.thing.at->assumed = assumed_sides(cells, *body.thing.at);
+  if (params.assumes_sides && !body.is_contradicted)
+    body.thing.at->assumed = assumed_sides(cells, *body.thing.at, step.map);
 }
 
 void judge_gone(Body& body, const ChangedMap& step) {
+  if (body.is_pushed) return;
   const BodyCells cells = cells_of(body, Side::kGone, step.map);
   const std::size_t faces = cells.faces.size();
   const std::size_t most = std::max(body.most_faces_gone, faces);
   body.most_faces_gone = most;
   if (static_cast<double>(faces) >= kLeftShare * static_cast<double>(most) && faces > 0) {
-    body.thing.from = outline_of_gone(cells, step.map);
+    body.freed = outline_of_gone(cells, step.map);
+    body.thing.from = up_to_neighbours(*body.freed, step.map);
     if (!body.thing.at) body.thing.kind = ThingKind::kGone;
     return;
   }
@@ -176,6 +182,7 @@ void own(Body& body, std::span<const CellChange> cells, Side side) {
 }
 
 void judge(Body& body, const ChangedMap& step, const ThingsParams& params) {
+  if (step.takes_back) body.is_pushed = false;
   if (!body.come.empty() || body.thing.at) judge_standing(body, step, params);
   if (body.most_faces_gone > 0 || !body.gone.empty()) judge_gone(body, step);
   body.thing.last_seen = step.time;

@@ -48,18 +48,21 @@ struct Body {
   ThingCells gone;                  ///< what stood here and does not, and the floor that this has shown
   std::size_t most_faces_come = 0;  ///< cells of its surface, at most so far
   std::size_t most_faces_gone = 0;
-  std::size_t written = 0;       ///< cells ever owned
-  Timestamp grown;               ///< when its surface last grew, or it went
-  std::optional<Thing> told;     ///< as it was told last; nothing: not yet
-  bool is_touched = false;       ///< by the revision that is being taken
-  bool has_grown = false;        ///< by the same
-  int looks_through = 0;         ///< scans with beams through what is assumed of it
+  std::size_t written = 0;         ///< cells ever owned
+  Timestamp grown;                 ///< when its surface last grew, or it went
+  std::optional<Thing> told;       ///< as it was told last; nothing: not yet
+  bool is_touched = false;         ///< by the revision that is being taken
+  bool has_grown = false;          ///< by the same
+  int looks_through = 0;           ///< scans with beams through what is assumed of it
+  std::optional<Outline> freed{};  ///< the floor that what has gone has left; its outline may reach up to neighbours
+  bool is_pushed = false;  ///< its outlines are those of a body that was pushed: what it has of cells are two strips
   bool is_contradicted = false;  ///< by them, or by a revision: nothing is assumed of it where it stands
 
   [[nodiscard]] ThingCells& cells(Side side) { return side == Side::kCome ? come : gone; }
   [[nodiscard]] const ThingCells& cells(Side side) const { return side == Side::kCome ? come : gone; }
   /// Where the cells of that side lie: where it stands, or stood.
   [[nodiscard]] const std::optional<Outline>& outline(Side side) const {
+    if (side == Side::kGone && freed && thing.from) return freed;
     return side == Side::kCome ? thing.at : thing.from;
   }
 };

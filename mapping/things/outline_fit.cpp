@@ -11,7 +11,9 @@ namespace {
 
 constexpr double kCoarse_rad = 3.0 * std::numbers::pi / 180.0;
 constexpr double kFine_rad = 0.5 * std::numbers::pi / 180.0;
-constexpr double kOnSide_cells = 1.5;         // a cell so near to a side lies on it
+constexpr double kOnSide_cells = 1.5;  // a cell so near to a side lies on it
+constexpr double kWholeSideShare = 0.8;
+constexpr int kHiddenGap_cells = 2;           // between a body and a neighbour that hid its side
 constexpr double kSeenShare = 0.5;            // of a side's length
 constexpr std::size_t kMostForHeading = 256;  // cells; more are thinned out
 
@@ -90,7 +92,16 @@ double best_heading(const std::vector<Point2>& faces, double resolution_m) {
   return best_rad;
 }
 
-/// Lengthwise, with its heading in [0, π).
+/// The same rectangle, its heading along the longer side, in [0, π).
+Outline lengthwise(Outline outline) {
+  if (outline.length_m < outline.width_m) {
+    std::swap(outline.length_m, outline.width_m);
+    outline.heading_rad += std::numbers::pi / 2;
+  }
+  outline.heading_rad = std::fmod(outline.heading_rad + 2.0 * std::numbers::pi, std::numbers::pi);
+  return outline;
+}
+
 Outline outline_around(const Extent& extent, double heading_rad, double resolution_m) {
   const Point2 own{0.5 * (extent.low_u + extent.high_u), 0.5 * (extent.low_v + extent.high_v)};
   Outline outline;
@@ -98,12 +109,7 @@ Outline outline_around(const Extent& extent, double heading_rad, double resoluti
   outline.length_m = std::max(extent.along_u(), resolution_m);
   outline.width_m = std::max(extent.along_v(), resolution_m);
   outline.heading_rad = heading_rad;
-  if (outline.length_m < outline.width_m) {
-    std::swap(outline.length_m, outline.width_m);
-    outline.heading_rad += std::numbers::pi / 2;
-  }
-  outline.heading_rad = std::fmod(outline.heading_rad + 2.0 * std::numbers::pi, std::numbers::pi);
-  return outline;
+  return lengthwise(outline);
 }
 
 /// Places along a side (numbered as Outline has it), so far beyond it.
@@ -146,6 +152,24 @@ double depth_behind(const std::vector<Point2>& inside, const Extent& face, doubl
   const auto middle = reach.begin() + static_cast<std::ptrdiff_t>(columns * 3 / 5);
   std::nth_element(reach.begin(), middle, reach.end());
   return *middle;
+}
+
+/// A surface lies along all of a side, so far beyond it.
+bool is_surface_beyond(const Outline& outline, int side, double beyond_m, const OccupancyGrid& map) {
+  int all = 0;
+  int covered = 0;
+  along_side(outline, side, beyond_m, map.resolution_m(), [&](const Point2& place) {
+    ++all;
+    covered += map.at(map.geometry().cell_at(place)) == CellState::kOccupied ? 1 : 0;
+  });
+  return covered >= kWholeSideShare * all;
+}
+
+/// The side moved out by so much.
+void push_out(Outline& outline, int side, double by_m) {
+  const double turn_rad = outline.heading_rad + side * std::numbers::pi / 2;
+  outline.centre += 0.5 * by_m * Point2{std::cos(turn_rad), std::sin(turn_rad)};
+  (side % 2 == 0 ? outline.length_m : outline.width_m) += by_m;
 }
 
 }  // namespace
@@ -192,6 +216,19 @@ Outline outline_of_gone(const BodyCells& cells, const OccupancyGrid& map) {
     outline.seen[side] =
         is_mostly(outline, static_cast<int>(side), cells.resolution_m, 2.0 * cells.resolution_m, is_known);
   return outline;
+}
+
+Outline up_to_neighbours(const Outline& freed, const OccupancyGrid& map) {
+  if (freed.width_m < kOneFace_m) return freed;  // nothing is known of its depth
+  Outline outline = freed;
+  for (int side = 0; side < 4; ++side) {
+    for (int cells = 1; cells <= kHiddenGap_cells; ++cells) {
+      if (!is_surface_beyond(freed, side, cells * map.resolution_m(), map)) continue;
+      push_out(outline, side, cells * map.resolution_m());
+      break;
+    }
+  }
+  return lengthwise(outline);
 }
 
 double share_on_sides(const BodyCells& cells, const Outline& outline) {

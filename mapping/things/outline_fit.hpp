@@ -24,6 +24,10 @@ struct BodyCells {
 /// that face. A side is seen where most of what lies beyond it is known in `map`.
 [[nodiscard]] Outline outline_of_gone(const BodyCells& cells, const OccupancyGrid& map);
 
+/// What has gone from beside a neighbour or a wall stood against it: its side there was hidden, and the floor that
+/// became free ends a cell or two before. The outline with such sides where the surface lies.
+[[nodiscard]] Outline up_to_neighbours(const Outline& freed, const OccupancyGrid& map);
+
 /// Share of the surface that lies on the sides of the outline, [0, 1].
 [[nodiscard]] double share_on_sides(const BodyCells& cells, const Outline& outline);
 

@@ -61,6 +61,8 @@ class Things {
   void join_faces(const ChangedMap& now);
   /// What has gone here and come there.
   void join_moves();
+  /// What has come on one side of a body and gone on the other.
+  void join_pushes(const OccupancyGrid& map);
   /// The thing that is told of by both: from here to there, or gone from where it stood. Null: there is none.
   [[nodiscard]] Body* other_part_of(const Body& body);
   /// Of two bodies that are one the one that was told first, else that began first, takes the other in.

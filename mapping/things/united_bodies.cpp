@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "mapping/things/pushed.hpp"
 #include "mapping/things/things.hpp"
 
 namespace deltamap::mapping::things {
@@ -27,6 +28,11 @@ bool may_be_one(const Outline& a, const Outline& b) {
 bool is_the_going_of(const Body& body, const Body& stood) {
   return !body.told && body.thing.from && !body.thing.at && stood.thing.at && stood.come.empty() &&
          overlap_share(*stood.thing.at, *body.thing.from) > kSameBodyOverlap;
+}
+
+/// It has come, or it has gone and did not come before.
+bool is_one_end(const Thing& thing) {
+  return thing.at.has_value() != thing.from.has_value() && thing.kind != ThingKind::kTakenBack;
 }
 
 /// The sides on which both lie; nothing where one has gone and the other has come.
@@ -59,6 +65,7 @@ void take_cells(Body& into, const Body& part) {
   into.written += part.written;
   into.grown = std::max(into.grown, part.grown);
   into.has_grown = into.has_grown || part.has_grown;
+  if (!into.freed) into.freed = part.freed;
   into.is_contradicted = into.is_contradicted || part.is_contradicted;
   into.is_touched = true;
 }
@@ -89,6 +96,30 @@ void Things::join_faces(const ChangedMap& now) {
     const auto other = std::find_if(bodies_.begin(), bodies_.end(), is_other_face);
     if (other == bodies_.end()) continue;
     judge(unite(*other, grown), now, params_);
+    next = bodies_.begin();
+  }
+}
+
+void Things::join_pushes(const OccupancyGrid& map) {
+  for (auto next = bodies_.begin(); next != bodies_.end();) {
+    Body& body = *next++;
+    if (!body.has_grown || !is_tellable(body, params_)) continue;
+    std::optional<Pushed> pushed;
+    const auto other = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& one) {
+      if (!one.told || !is_one_end(one.thing) || !is_one_end(body.thing) ||
+          one.thing.at.has_value() == body.thing.at.has_value())
+        return false;
+      pushed = body.thing.at ? pushed_body(*body.thing.at, *one.thing.from, map)
+                             : pushed_body(*one.thing.at, *body.thing.from, map);
+      return pushed.has_value();
+    });
+    if (other == bodies_.end()) continue;
+    Body& whole = unite(*other, body);
+    whole.thing.from = pushed->from;
+    whole.thing.at = pushed->at;
+    whole.thing.kind = ThingKind::kMoved;
+    whole.freed.reset();
+    whole.is_pushed = true;
     next = bodies_.begin();
   }
 }

@@ -56,6 +56,26 @@ TEST(Assumed, SurfacesThatLieOnNoRectangleFixNone) {
   EXPECT_EQ(sides(told[0].thing.at->assumed), 0);
 }
 
+TEST(Assumed, ABodyThatSticksOutOfARowMayGoOnBehindItsNeighbours) {
+  DrawnSite site;
+  site.fill({1.0, 5.0, 11.0, 7.0}, CellState::kUnknown).fill({1.0, 5.0, 4.0, 5.0}, CellState::kOccupied);
+  site.fill({6.4, 5.0, 11.0, 5.0}, CellState::kOccupied).begin_with_what_is_drawn();
+  const Drawn out{4.0, 4.2, 6.4, 4.95};
+  const auto told = site.south(out).west(out).east(out).revision(10.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(sides(told[0].thing.at->seen), 3);
+  EXPECT_EQ(sides(told[0].thing.at->assumed), 0);
+}
+
+TEST(Assumed, ASideAlongASurfaceOfTheMapGoesNoFarther) {
+  DrawnSite site;
+  site.fill({1.0, 5.65, 11.0, 7.0}, CellState::kUnknown).fill({1.0, 5.65, 11.0, 5.65}, CellState::kOccupied);
+  site.begin_with_what_is_drawn();
+  const auto told = site.south(kBox).west(kBox).east(kBox).revision(10.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(sides(told[0].thing.at->assumed), 1);
+}
+
 TEST(Assumed, NothingIsWhereTheSettingIsOff) {
   DrawnSite site{{.assumes_sides = false}};
   const auto told = site.south(kBox).west(kBox).revision(10.0);

@@ -51,5 +51,19 @@ TEST(OutlineFit, OfASingleFaceOneSideIsSeen) {
   EXPECT_EQ(outline.seen, (std::array<bool, 4>{false, true, false, false}));
 }
 
+TEST(OutlineFit, WhatHasGoneReachedUpToTheNeighbourThatHidItsSide) {
+  OccupancyGrid map{{120, 120, kCell_m, {0.0, 0.0}}, CellState::kFree};
+  for (int row = 40; row <= 60; ++row) map.set({39, row}, CellState::kOccupied);  // a neighbour in the west
+  const Outline freed{{2.525, 2.525}, 1.0, 1.0, 0.0, {true, true, true, true}, {}};
+  const Outline whole = up_to_neighbours(freed, map);
+  EXPECT_NEAR(whole.length_m, 1.05, 0.051);
+  EXPECT_GT(whole.length_m, freed.length_m);
+  EXPECT_DOUBLE_EQ(whole.width_m, freed.width_m);
+  EXPECT_LT(whole.centre.x(), freed.centre.x());
+
+  const Outline face{{2.525, 2.525}, 1.0, 0.1, 0.0, {}, {}};
+  EXPECT_EQ(up_to_neighbours(face, map), face) << "nobody knows how deep it was";
+}
+
 }  // namespace
 }  // namespace deltamap::mapping::things

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/things/pushed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/mapping/things/drawn_site.hpp"
+
+namespace deltamap::mapping::things {
+namespace {
+
+// A body of 2.4 m × 2.0 m that is pushed by 0.5 m to the south.
+constexpr Drawn kOld{4.0, 4.0, 6.4, 6.0};
+constexpr Drawn kNew{4.0, 3.5, 6.4, 5.5};
+const Outline kCame{{5.2, 3.75}, 2.4, 0.5, 0.0, {true, false, true, true}, {}};
+const Outline kWent{{5.2, 5.75}, 2.4, 0.5, 0.0, {false, true, false, false}, {}};
+
+class PushedBody : public testing::Test {
+ protected:
+  PushedBody() { site.fill({4.0, 4.0, 6.35, 5.95}, CellState::kUnknown).begin_with_what_is_drawn(); }
+  DrawnSite site;
+};
+
+TEST_F(PushedBody, StripsOnBothSidesTellWhereItStoodAndStands) {
+  const auto pushed = pushed_body(kCame, kWent, site.map);
+  ASSERT_TRUE(pushed);
+  expect_outline(pushed->from, kOld);
+  expect_outline(pushed->at, kNew);
+  EXPECT_EQ(pushed->at.seen, (std::array<bool, 4>{false, false, false, true}));
+  EXPECT_EQ(pushed->from.seen, (std::array<bool, 4>{false, true, false, false}));
+}
+
+TEST_F(PushedBody, AStripThatWasSeenInPartIsEnough) {
+  Outline part = kWent;
+  part.length_m = 1.4;
+  part.centre.x() -= 0.5;
+  const auto pushed = pushed_body(kCame, part, site.map);
+  ASSERT_TRUE(pushed);
+  expect_outline(pushed->at, kNew);
+  part.centre.x() -= 0.5;
+  EXPECT_FALSE(pushed_body(kCame, part, site.map)) << "it reaches beyond the other";
+}
+
+TEST_F(PushedBody, StripsOfDifferentDepthsBelongToTwoBodies) {
+  Outline deeper = kWent;
+  deeper.width_m = 0.8;
+  EXPECT_FALSE(pushed_body(kCame, deeper, site.map));
+}
+
+TEST_F(PushedBody, StripsThatAreNotParallelBelongToTwoBodies) {
+  Outline turned = kWent;
+  turned.heading_rad = 20.0 * std::numbers::pi / 180.0;
+  EXPECT_FALSE(pushed_body(kCame, turned, site.map));
+}
+
+TEST_F(PushedBody, FloorBetweenThemIsNoBody) {
+  EXPECT_FALSE(pushed_body(kCame, kWent, site.fill(kOld, CellState::kFree).next));
+}
+
+TEST_F(PushedBody, ThatIsDeeperThanWideTurnsItsHeading) {
+  Outline came = kCame;
+  Outline went = kWent;
+  came.length_m = went.length_m = 1.2;
+  const auto pushed = pushed_body(came, went, site.map);
+  ASSERT_TRUE(pushed);
+  EXPECT_NEAR(pushed->at.heading_rad, std::numbers::pi / 2, 1e-9);
+  EXPECT_NEAR(pushed->at.length_m, 2.0, 1e-9);
+  EXPECT_EQ(pushed->at.seen, (std::array<bool, 4>{false, false, true, false})) << "its southern side";
+}
+
+TEST_F(PushedBody, IsOneThingThatMoved) {
+  site.box(kOld).begin_with_what_is_drawn();
+  site.fill({4.0, 3.5, 6.4, 3.95}, CellState::kUnknown).south(kNew);
+  site.fill({4.0, 3.5, 4.0, 3.95}, CellState::kOccupied).fill({6.4, 3.5, 6.4, 3.95}, CellState::kOccupied);
+  const auto came = site.revision(10.0);
+  ASSERT_EQ(came.size(), 1u);
+  EXPECT_EQ(came[0].thing.kind, ThingKind::kAppeared);
+  const auto went = site.clear({4.0, 5.55, 6.4, 6.0}).revision(300.0);
+  ASSERT_EQ(went.size(), 1u);
+  EXPECT_EQ(went[0].thing.id, came[0].thing.id);
+  EXPECT_EQ(went[0].thing.kind, ThingKind::kMoved);
+  expect_outline(*went[0].thing.from, kOld);
+  expect_outline(*went[0].thing.at, kNew);
+
+  site.fill({8.0, 8.0, 9.0, 9.0}, CellState::kOccupied).revision(310.0);
+  expect_outline(*site.things.all()[0].at, kNew);
+  const auto undone = site.undo(2, 400.0);
+  ASSERT_FALSE(undone.empty());
+  EXPECT_NE(site.things.all()[0].kind, ThingKind::kMoved) << "the going was taken back";
+}
+
+}  // namespace
+}  // namespace deltamap::mapping::things
