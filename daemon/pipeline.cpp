@@ -21,7 +21,7 @@
 #include "daemon/records/recorder.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "daemon/settings/start_error.hpp"
-#include "daemon/site_reload.hpp"
+#include "daemon/site_drawing.hpp"
 #include "daemon/stages/delta_stage.hpp"
 #include "daemon/stages/localization_stage.hpp"
 #include "daemon/stages/map_stage.hpp"
@@ -72,7 +72,7 @@ struct Pipeline::State {
   Channel<MapRevision> revisions{4};  // map → localization: a gap in numbers, which the localizer bridges
   Channel<std::shared_ptr<const TransientObstacles>> transients{8};  // delta → localization: offered again next scan
   Channel<control::Command> commands{16};       // control → localization: the newest command, and its sender is told
-  Channel<SharedSite> sites{4};                 // whoever reloads → localization → delta → map
+  Channel<SharedSite> sites{4};                 // whoever reloads or draws → localization → delta → map
   Channel<navigation::WanderParams> wander{4};  // whoever reloads → localization: refused, and who asked is told
 
   SharedSite site_at_start;  // in options.start, too
@@ -94,6 +94,7 @@ struct Pipeline::State {
     if (control) control->tell(outcome);
   }
   LiveSettings::Outcome reload();
+  control::CommandOutcome draw(const SiteEditOrder& order);
   bool set_log_level(LogLevel level);
   void begin_threads();
   void end_threads();
@@ -129,7 +130,10 @@ Pipeline::State::State(const Settings& given, Options wanted)
       incidents{begun_incident_keeper(incident_options(), telemetry, log_tail, {options.log, options.warn})},
       recorder{recorder_options(),
                telemetry,
-               {.log = options.log, .saved = [this](const auto& outcome) { tell(outcome); }, .warn = options.warn}},
+               {.log = options.log,
+                .saved = [this](const auto& outcome) { tell(outcome); },
+                .warn = options.warn,
+                .draw = [this](const SiteEditOrder& order) { return draw(order); }}},
       io{settings, io_wiring()},
       localization{settings, options.start, options.first_map, localization_wiring()},
       delta{settings, options.start, delta_wiring()},
@@ -160,6 +164,11 @@ control::ControlDesk::Wiring Pipeline::State::control_wiring() {
               [this](std::string words, std::uint64_t ticket) {
                 return recorder.from_control().try_send(
                     std::make_unique<const MarkOrder>(MarkOrder{std::move(words), ticket}));
+              },
+          .draw =
+              [this](SiteEdit edit, std::uint64_t ticket) {
+                return recorder.from_control().try_send(
+                    std::make_unique<const SiteEditOrder>(SiteEditOrder{std::move(edit), ticket}));
               },
           .incidents = [this] { return incidents_reply(settings.incidents); },
           .set_log_level = [this](LogLevel level) { return set_log_level(level); },
@@ -306,6 +315,11 @@ LiveSettings::Outcome Pipeline::State::reload() {
   if (outcome.done) reload_site(settings, options.start.map->geometry(), {telemetry, sites, site}, outcome);
   for (const std::string& line : outcome.lines) (outcome.done ? options.log : options.warn)("reload: " + line);
   return outcome;
+}
+
+control::CommandOutcome Pipeline::State::draw(const SiteEditOrder& order) {
+  const std::scoped_lock one_after_another{reloading};
+  return draw_on_site(settings, options.start.map->geometry(), order, {telemetry, sites, site});
 }
 
 bool Pipeline::State::set_log_level(LogLevel level) {

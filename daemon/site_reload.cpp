@@ -33,10 +33,13 @@ void reload_site(const Settings& settings, const GridGeometry& map, const SiteIn
   in_force.newest.set(wanted);
   outcome.lines.push_back("taken: " + counted(wanted->bays.size(), "bay") + ", " +
                           counted(wanted->zones.size(), "zone"));
-  const EstimateGauges& robot = in_force.telemetry.estimate;
-  if (robot.state.value() != static_cast<std::uint8_t>(LocalizerState::kTracking)) return;
-  for (std::string& line : zones_over({robot.x_m.value(), robot.y_m.value()}, wanted->zones))
-    outcome.lines.push_back(std::move(line));
+  for (std::string& line : warnings_of(*wanted, in_force.telemetry)) outcome.lines.push_back(std::move(line));
+}
+
+std::vector<std::string> warnings_of(const Site& site, const Telemetry& telemetry) {
+  const EstimateGauges& robot = telemetry.estimate;
+  if (robot.state.value() != static_cast<std::uint8_t>(LocalizerState::kTracking)) return {};
+  return zones_over({robot.x_m.value(), robot.y_m.value()}, site.zones);
 }
 
 }  // namespace deltamap::daemon

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/channel.hpp"
 #include "daemon/outputs/newest_board.hpp"
@@ -25,6 +26,9 @@ struct SiteInForce {
   Channel<SharedSite>& sites;  ///< to those who go by it
   NewestBoard<Site>& newest;
 };
+/// A line each for zones in which the robot must not be and stands, where it knows that.
+[[nodiscard]] std::vector<std::string> warnings_of(const Site& site, const Telemetry& telemetry);
+
 /// Tells in `outcome` what was taken, or why nothing was. Never by two threads at once.
 void reload_site(const Settings& settings, const GridGeometry& map, const SiteInForce& in_force,
                  LiveSettings::Outcome& outcome);

@@ -71,11 +71,13 @@ void ControlDesk::answer(const std::string& line, bool sender_is_gone, control::
     case Request::Kind::kReload:
       return reload(std::move(reply));
     case Request::Kind::kRecordStart:
-      return record(true, request, std::move(reply));
+      return await(request, std::move(reply), [this](auto ticket) { return wiring_.record(true, ticket); });
     case Request::Kind::kRecordStop:
-      return record(false, request, std::move(reply));
+      return await(request, std::move(reply), [this](auto ticket) { return wiring_.record(false, ticket); });
     case Request::Kind::kMark:
-      return mark(request, std::move(reply));
+      return await(request, std::move(reply), [&](auto ticket) { return wiring_.mark(request.words, ticket); });
+    case Request::Kind::kEditSite:
+      return await(request, std::move(reply), [&](auto ticket) { return wiring_.draw(request.edit, ticket); });
     case Request::Kind::kIncidents:
       return reply(wiring_.incidents());
     case Request::Kind::kLogLevel:
@@ -109,15 +111,10 @@ void ControlDesk::drive(bool may_drive, const Request& request, control::Server:
   wiring_.let_drive(may_drive, ticket);
 }
 
-void ControlDesk::record(bool goes_on, const Request& request, control::Server::Reply reply) {
+void ControlDesk::await(const Request& request, control::Server::Reply reply,
+                        const std::function<bool(std::uint64_t)>& send) {
   const std::uint64_t ticket = next_ticket_++;
-  if (!wiring_.record(goes_on, ticket)) return refuse(request, "the disk is too slow: try again", reply);
-  waiting_.emplace(ticket, Waiting{request, std::move(reply)});
-}
-
-void ControlDesk::mark(const Request& request, control::Server::Reply reply) {
-  const std::uint64_t ticket = next_ticket_++;
-  if (!wiring_.mark(request.words, ticket)) return refuse(request, "the disk is too slow: try again", reply);
+  if (!send(ticket)) return refuse(request, "the disk is too slow: try again", reply);
   waiting_.emplace(ticket, Waiting{request, std::move(reply)});
 }
 

@@ -33,6 +33,7 @@ class ControlDesk {
     std::function<LiveSettings::Outcome()> reload;
     std::function<bool(bool goes_on, std::uint64_t ticket)> record;       ///< false: too busy
     std::function<bool(std::string words, std::uint64_t ticket)> mark{};  ///< false: too busy
+    std::function<bool(SiteEdit edit, std::uint64_t ticket)> draw{};      ///< false: too busy
     std::function<std::string()> incidents{};                             ///< the reply that lists them
     std::function<bool(LogLevel)> set_log_level;                          ///< false: this run's log has no levels
     std::function<std::string()> things{};                                ///< one line of JSON: all things
@@ -61,8 +62,9 @@ class ControlDesk {
   void answer(const std::string& line, bool sender_is_gone, control::Server::Reply reply);
   void refuse(const control::Request& request, const std::string& why, const control::Server::Reply& reply) const;
   void drive(bool may_drive, const control::Request& request, control::Server::Reply reply);
-  void mark(const control::Request& request, control::Server::Reply reply);
-  void record(bool goes_on, const control::Request& request, control::Server::Reply reply);
+  /// Of an order that waits for the disk: `send` hands it over with its ticket, or answers false.
+  void await(const control::Request& request, control::Server::Reply reply,
+             const std::function<bool(std::uint64_t)>& send);
   void reload(control::Server::Reply reply);
   [[nodiscard]] std::string reloaded() const;
   [[nodiscard]] std::string with_log_level(LogLevel level) const;

@@ -97,11 +97,35 @@ RequestAnswer log_level_in(const Json& json) {
   return {request, ""};
 }
 
+/// Empty where it is not there; nothing where it is no text.
+std::optional<std::string> text_in(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  if (found == json.end()) return "";
+  return found->is_string() ? std::optional{found->get<std::string>()} : std::nullopt;
+}
+
+RequestAnswer site_edit_in(const Json& json, PlaceKind kind) {
+  const auto version = text_in(json, "version");
+  const auto of = text_in(json, "of");
+  const auto place = json.find("place");
+  const bool is_whole = version && !version->empty() && of && (place != json.end() ? place->is_object() : !of->empty());
+  if (!is_whole) return {std::nullopt, "a bay or zone needs version, and place or of"};
+  Request request{Kind::kEditSite, {}};
+  request.edit = {kind, *version, *of, place != json.end() ? place->dump() : ""};
+  return {request, ""};
+}
+
 RequestAnswer drive_in(const Json& json) {
   const auto mode = json.find("mode");
   if (mode != json.end() && *mode == "off") return {Request{Kind::kDriveOff, {}}, ""};
   if (mode != json.end() && *mode == "wander") return {Request{Kind::kDriveWander, {}}, ""};
   return {std::nullopt, "'drive' needs the mode off or wander"};
+}
+
+/// "zone 'gate' changed"
+std::string words_of(const SiteEdit& edit) {
+  const std::string what = std::string(daemon::name_of(edit.kind)) + (edit.of.empty() ? "" : " '" + edit.of + "'");
+  return what + (edit.place.empty() ? " taken away" : edit.of.empty() ? " drawn" : " changed");
 }
 
 std::string_view name_of(Kind kind) {
@@ -137,6 +161,8 @@ RequestAnswer request_of_line(std::string_view line) {
   if (name == "mark") return mark_in(json);
   if (name == "log-level") return log_level_in(json);
   if (name == "drive") return drive_in(json);
+  if (name == "bay") return site_edit_in(json, PlaceKind::kBay);
+  if (name == "zone") return site_edit_in(json, PlaceKind::kZone);
   return {std::nullopt, "unknown command '" + name + "'"};
 }
 
@@ -147,7 +173,7 @@ bool is_stop(std::string_view line) {
 
 std::string line_of(const Request& request) {
   Json json;
-  json["command"] = name_of(request.kind);
+  json["command"] = request.kind == Kind::kEditSite ? daemon::name_of(request.edit.kind) : name_of(request.kind);
   if (request.kind == Kind::kRelocalize) {
     json["x_m"] = request.map_from_robot.x;
     json["y_m"] = request.map_from_robot.y;
@@ -161,6 +187,11 @@ std::string line_of(const Request& request) {
   if (request.kind == Kind::kRecordStop) json["mode"] = "stop";
   if (request.kind == Kind::kDriveOff) json["mode"] = "off";
   if (request.kind == Kind::kDriveWander) json["mode"] = "wander";
+  if (request.kind == Kind::kEditSite) {
+    json["version"] = request.edit.version;
+    if (!request.edit.of.empty()) json["of"] = request.edit.of;
+    if (!request.edit.place.empty()) json["place"] = Json::parse(request.edit.place, nullptr, false);
+  }
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -184,6 +215,7 @@ std::string words_of(const Request& request) {
   if (request.kind == Kind::kRecordStop) return "record stop";
   if (request.kind == Kind::kDriveOff) return "drive off";
   if (request.kind == Kind::kDriveWander) return "drive wander";
+  if (request.kind == Kind::kEditSite) return words_of(request.edit);
   if (request.kind == Kind::kMark) return request.words.empty() ? "mark" : "mark \"" + request.words + "\"";
   if (request.kind == Kind::kLogLevel) return "log-level " + std::string(name_of(request.log_level));
   if (request.kind == Kind::kUndoThing) return "undo thing " + std::to_string(request.thing);

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/geometry/pose2.hpp"
+#include "daemon/site/site_edit.hpp"
 #include "daemon/telemetry/log_level.hpp"
 
 namespace deltamap::daemon::control {
@@ -29,6 +30,7 @@ struct Request {
     kUndoThing,    ///< `thing` is taken back
     kThings,       ///< what has come, gone and moved
     kBays,         ///< what stands in the bays
+    kEditSite,     ///< a bay or zone is drawn, changed or taken away: `edit`
     kRollBack,     ///< the map is M_`revision` again
     kRecordStart,  ///< a recording that was stopped goes on
     kRecordStop,   ///< the recording stops; the daemon goes on
@@ -43,6 +45,7 @@ struct Request {
   std::uint32_t revision = 0;            ///< kUndo, kRollBack
   LogLevel log_level = LogLevel::kInfo;  ///< kLogLevel
   std::string words{};                   ///< kMark: one line, at most kLongestWords bytes
+  SiteEdit edit{};                       ///< kEditSite
   friend bool operator==(const Request&, const Request&) = default;
 };
 

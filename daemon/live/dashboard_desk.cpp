@@ -11,6 +11,7 @@
 #include "daemon/live/metrics_text.hpp"
 #include "daemon/live/page_answers.hpp"
 #include "daemon/outputs/bay_note.hpp"
+#include "daemon/outputs/site_json.hpp"
 #include "daemon/outputs/thing_note.hpp"
 #include "daemon/outputs/zone_note.hpp"
 #include "daemon/system/service.hpp"
@@ -75,6 +76,7 @@ Answer DashboardDesk::answer(const Request& request) {
   if (path == "/api/history") return {.type = kJson, .body = history_json(board_) + "\n"};
   if (path == "/api/things") return {.type = kJson, .body = json_of(*goods_.things.newest()) + "\n"};
   if (path == "/api/zones") return {.type = kJson, .body = json_of(goods_.site.newest()->zones) + "\n"};
+  if (path == "/api/site") return {.type = kJson, .body = json_of(*goods_.site.newest(), settings_) + "\n"};
   if (path == "/api/bays")
     return {.type = kJson, .body = json_of(*goods_.bays.newest(), *goods_.things.newest(), port_clock_now()) + "\n"};
   if (path == "/api/scan") return newest_scan();

@@ -95,7 +95,9 @@ std::string hello_message(const Settings& settings, const std::optional<RunName>
                            {"has_history", run->has_history}}
                     : Json(nullptr);
   const bool drives = settings.navigation.mode != navigation::DriveMode::kOff;
-  json["control"] = page.control ? Json{{"drive", drives && !page.token_file.empty()}} : Json(nullptr);
+  json["control"] = page.control
+                        ? Json{{"drive", drives && !page.token_file.empty()}, {"draw", !page.token_file.empty()}}
+                        : Json(nullptr);
   return text_of(json);
 }
 

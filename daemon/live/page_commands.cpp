@@ -17,6 +17,7 @@ using control::Request;
 using dashboard::Answer;
 
 constexpr const char* kJson = "application/json";
+constexpr std::string_view kDrawingNeedsToken = "what changes where the robot drives needs 'dashboard.token_file'";
 constexpr unsigned kDone = 200, kForbidden = 403, kNotDone = 409, kNobody = 503;
 
 Answer answer_of(const std::string& line) {
@@ -25,9 +26,12 @@ Answer answer_of(const std::string& line) {
   return {.status = is_done ? kDone : kNotDone, .type = kJson, .body = line + "\n"};
 }
 
-bool moves_the_robot(const std::string& line) {
+/// Why it is not taken where the page asks for no token; empty: it is.
+std::string_view needs_token(const std::string& line) {
   const auto request = control::request_of_line(line).request;
-  return request && request->kind == Request::Kind::kDriveWander;
+  if (!request) return {};
+  if (request->kind == Request::Kind::kDriveWander) return dashboard::kDrivingNeedsToken;
+  return request->kind == Request::Kind::kEditSite ? kDrawingNeedsToken : std::string_view{};
 }
 
 }  // namespace
@@ -52,9 +56,8 @@ Answer refused_command(unsigned status, const std::string& why) {
 void take_command(const PageControl& control, bool has_token, const dashboard::Request& request,
                   dashboard::Reply reply) {
   if (!control.ask) return reply(refused_command(kNobody, "no commands in this run: the control socket is not there"));
-  if (!has_token && moves_the_robot(request.body)) {
-    return reply(refused_command(kForbidden, std::string(dashboard::kDrivingNeedsToken)));
-  }
+  const std::string_view why = has_token ? std::string_view{} : needs_token(request.body);
+  if (!why.empty()) return reply(refused_command(kForbidden, std::string(why)));
   control.ask(request.body, [reply = std::move(reply)](const std::string& line) { reply(answer_of(line)); });
 }
 

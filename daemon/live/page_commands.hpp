@@ -26,7 +26,8 @@ struct PageControl {
 /// `desk` may be null.
 [[nodiscard]] PageControl page_control(control::ControlDesk* desk, IoStage& io);
 
-/// Hands a command to the control desk. What moves the robot is refused where the page asks for no token.
+/// Hands a command to the control desk. What moves the robot, or changes where it drives, is refused where the page
+/// asks for no token.
 void take_command(const PageControl& control, bool has_token, const dashboard::Request& request,
                   dashboard::Reply reply);
 

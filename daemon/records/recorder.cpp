@@ -115,6 +115,8 @@ void Recorder::write(RecorderItem&& item) {
     obey(*wanted);
   } else if (const auto* mark = std::get_if<std::unique_ptr<const MarkOrder>>(&item)) {
     keep(**mark);
+  } else if (const auto* edit = std::get_if<std::unique_ptr<const SiteEditOrder>>(&item)) {
+    if (hooks_.draw && hooks_.saved) hooks_.saved(hooks_.draw(**edit));
   } else if (auto* checkpoint = std::get_if<std::shared_ptr<const Checkpoint>>(&item)) {
     if (recording_) recording_->begin_part(**checkpoint, now_);
     if (listener_) listener_->hear(std::move(*checkpoint), now_);

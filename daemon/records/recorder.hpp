@@ -18,6 +18,7 @@
 #include "daemon/records/live_recording.hpp"
 #include "daemon/records/run_listener.hpp"
 #include "daemon/settings/memory_places.hpp"
+#include "daemon/site/site_edit.hpp"
 #include "daemon/telemetry/log_line.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "daemon/telemetry/telemetry.hpp"
@@ -33,10 +34,17 @@ struct RecordOrder {
   std::uint64_t ticket = 0;
 };
 
-using RecorderItem = std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint,
-                                  std::unique_ptr<const LocalizationRow>, std::unique_ptr<const KeptPose>,
-                                  std::unique_ptr<const KeptStability>, std::unique_ptr<const SaveOrder>, RecordOrder,
-                                  LogLine, std::shared_ptr<const Checkpoint>, std::unique_ptr<const MarkOrder>>;
+/// `ctl bay`, `ctl zone`, the page: a list of places is written.
+struct SiteEditOrder {
+  SiteEdit edit;
+  std::uint64_t ticket = 0;
+};
+
+using RecorderItem =
+    std::variant<drivers::port::ByteRecord, JournalNote, TrajectoryPoint, std::unique_ptr<const LocalizationRow>,
+                 std::unique_ptr<const KeptPose>, std::unique_ptr<const KeptStability>,
+                 std::unique_ptr<const SaveOrder>, RecordOrder, LogLine, std::shared_ptr<const Checkpoint>,
+                 std::unique_ptr<const MarkOrder>, std::unique_ptr<const SiteEditOrder>>;
 
 /// One sender's way to the recorder.
 using RecorderInput = Channel<RecorderItem>;
@@ -60,6 +68,7 @@ class Recorder {
     std::function<void(const std::string&)> log;                  ///< a short line
     std::function<void(const control::CommandOutcome&)> saved{};  ///< an operator's order is done; may be empty
     std::function<void(const std::string&)> warn{};               ///< a short line of what is degraded; empty: log
+    std::function<control::CommandOutcome(const SiteEditOrder&)> draw{};  ///< waits for the disk; may be empty
   };
   /// Throws FileInUse and StartError as LiveRecording does. A full disk is no reason.
   Recorder(const Options& options, Telemetry& telemetry, Hooks hooks);

@@ -20,16 +20,6 @@ constexpr double kLeastFloor_m2 = 0.3;  // half a pallet
 constexpr double kSampleStep_m = 0.05;  // of the area that two share
 constexpr double kMostShared = 0.02;    // of the smaller one: drawn by hand, they may touch
 
-std::vector<ListedPlace> listed(const std::vector<Bay>& bays) {
-  std::vector<ListedPlace> places;
-  for (const Bay& bay : bays) {
-    places.push_back({.id = bay.id, .polygon = bay.polygon});
-    if (!bay.name.empty()) places.back().words["name"] = bay.name;
-    if (!bay.station_id.empty()) places.back().words["stationId"] = bay.station_id;
-  }
-  return places;
-}
-
 std::vector<Bay> bays_of(const std::vector<ListedPlace>& places) {
   std::vector<Bay> bays;
   for (const ListedPlace& place : places) {
@@ -95,14 +85,33 @@ std::vector<Bay> bays_on(const GridGeometry& map, const std::string& file) {
   return bays_of(places);
 }
 
+std::vector<Bay> bays_of_places(const std::vector<ListedPlace>& places, const std::string& name,
+                                const GridGeometry& map) {
+  require_sound_places(places, name);
+  require_on_map(places, name, "bay", map);
+  return bays_of(places);
+}
+
 void require_sound_bays(const std::vector<Bay>& bays, const std::string& name) {
-  require_sound_places(listed(bays), name);
+  require_sound_places(places_of(bays), name);
 }
 
 void require_bays_on(const GridGeometry& map, const std::vector<Bay>& bays, const std::string& name) {
-  require_on_map(listed(bays), name, "bay", map);
+  require_on_map(places_of(bays), name, "bay", map);
 }
 
-std::string bays_as_yaml(const std::vector<Bay>& bays) { return places_as_yaml(listed(bays), kBayKeys); }
+std::string bays_as_yaml(const std::vector<Bay>& bays) { return places_as_yaml(places_of(bays), kBayKeys); }
+
+const PlaceKeys& bay_keys() { return kBayKeys; }
+
+std::vector<ListedPlace> places_of(const std::vector<Bay>& bays) {
+  std::vector<ListedPlace> places;
+  for (const Bay& bay : bays) {
+    places.push_back({.id = bay.id, .polygon = bay.polygon});
+    if (!bay.name.empty()) places.back().words["name"] = bay.name;
+    if (!bay.station_id.empty()) places.back().words["stationId"] = bay.station_id;
+  }
+  return places;
+}
 
 }  // namespace deltamap::daemon

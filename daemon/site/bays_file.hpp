@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/grid/grid_geometry.hpp"
+#include "daemon/site/place_list.hpp"
 #include "mapping/bays/bay.hpp"
 
 namespace deltamap::daemon {
@@ -28,5 +29,12 @@ void require_sound_bays(const std::vector<mapping::bays::Bay>& bays, const std::
 void require_bays_on(const GridGeometry& map, const std::vector<mapping::bays::Bay>& bays, const std::string& name);
 
 [[nodiscard]] std::string bays_as_yaml(const std::vector<mapping::bays::Bay>& bays);
+
+[[nodiscard]] const PlaceKeys& bay_keys();
+/// As a file lists them, in none.
+[[nodiscard]] std::vector<ListedPlace> places_of(const std::vector<mapping::bays::Bay>& bays);
+/// Checked as those of a file on this map. Throws std::runtime_error.
+[[nodiscard]] std::vector<mapping::bays::Bay> bays_of_places(const std::vector<ListedPlace>& places,
+                                                             const std::string& name, const GridGeometry& map);
 
 }  // namespace deltamap::daemon

@@ -25,6 +25,8 @@ struct ListedPlace {
   Polygon polygon;
   std::map<std::string, std::string> words{};  ///< those that are there, as text
   int line = 0;                                ///< where it begins in the file, from 1; 0: in none
+
+  friend bool operator==(const ListedPlace&, const ListedPlace&) = default;
 };
 
 /// `file` stands for the text in complaints. Corners count to a millimetre. Throws std::runtime_error.

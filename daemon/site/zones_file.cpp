@@ -84,13 +84,20 @@ Zones zones_on(const GridGeometry& map, const std::string& file) {
   } catch (const std::exception& error) {
     throw std::runtime_error(file + ": " + error.what());
   }
-  const std::vector<ListedPlace> places = places_in(text, file, kZoneKeys);
-  require_sound(places, file, "zone");
-  require_on_map(places, file, "zone", map);
-  return zones_of(places, file);
+  return zones_of_places(places_in(text, file, kZoneKeys), file, map);
 }
 
-std::string zones_as_yaml(const Zones& zones) {
+Zones zones_of_places(const std::vector<ListedPlace>& places, const std::string& name, const GridGeometry& map) {
+  require_sound(places, name, "zone");
+  require_on_map(places, name, "zone", map);
+  return zones_of(places, name);
+}
+
+std::string zones_as_yaml(const Zones& zones) { return places_as_yaml(places_of(zones), kZoneKeys); }
+
+const PlaceKeys& zone_keys() { return kZoneKeys; }
+
+std::vector<ListedPlace> places_of(const Zones& zones) {
   std::vector<ListedPlace> places;
   for (const Zone& zone : zones) {
     places.push_back({.id = zone.id, .polygon = zone.polygon});
@@ -99,7 +106,7 @@ std::string zones_as_yaml(const Zones& zones) {
     if (!zone.description.empty()) words["zoneDescriptor"] = zone.description;
     if (zone.kind == ZoneKind::kSpeedLimit) words["maximumSpeed"] = shortest_text(zone.most_speed_m_per_s);
   }
-  return places_as_yaml(places, kZoneKeys);
+  return places;
 }
 
 std::vector<std::string> zones_over(const Point2& robot_in_map, const Zones& zones) {

@@ -15,6 +15,7 @@
 
 #include "core/grid/grid_geometry.hpp"
 #include "core/zones.hpp"
+#include "daemon/site/place_list.hpp"
 
 namespace deltamap::daemon {
 
@@ -27,6 +28,13 @@ namespace deltamap::daemon {
 /// `name` stands for the text; whether they lie on the map is not asked.
 [[nodiscard]] Zones zones_of_text(const std::string& yaml, const std::string& name);
 [[nodiscard]] std::string zones_as_yaml(const Zones& zones);
+
+[[nodiscard]] const PlaceKeys& zone_keys();
+/// As a file lists them, in none.
+[[nodiscard]] std::vector<ListedPlace> places_of(const Zones& zones);
+/// Checked as those of a file on this map. Throws std::runtime_error.
+[[nodiscard]] Zones zones_of_places(const std::vector<ListedPlace>& places, const std::string& name,
+                                    const GridGeometry& map);
 
 /// A line each for those in which the robot must not be and stands: it may leave, and never comes back.
 [[nodiscard]] std::vector<std::string> zones_over(const Point2& robot_in_map, const Zones& zones);

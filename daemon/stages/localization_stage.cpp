@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "daemon/steps/run_begin.hpp"
@@ -71,6 +72,7 @@ void LocalizationStage::run() {
     pulse_.beat();
     auto message = wiring_.sensors.receive_within(kLookEvery);
     while (const auto params = wiring_.wander.try_receive()) pilot_.set_params(*params);
+    hear_of_sites();
     // After a stall the queue is drained: all odometry counts, of the scans only the newest.
     batch.clear();
     while (message) {
@@ -160,12 +162,18 @@ void LocalizationStage::pilot(const TrackedScan& tracked) {
 
 // --- the operator ---
 
+/// Also while no scan comes: who draws meanwhile is not told that the daemon is busy.
+void LocalizationStage::hear_of_sites() {
+  while (auto site = wiring_.sites.try_receive()) site_to_take_ = *std::move(site);
+}
+
 void LocalizationStage::take_sites(const Scan& scan) {
-  while (auto site = wiring_.sites.try_receive()) {
-    step_.set_zones((*site)->zones);
-    pilot_.set_zones((*site)->zones);
-    note({scan.number, scan.time, *site});
-    site_to_hand_on_ = *std::move(site);
+  hear_of_sites();
+  if (site_to_take_) {
+    step_.set_zones(site_to_take_->zones);
+    pilot_.set_zones(site_to_take_->zones);
+    note({scan.number, scan.time, site_to_take_});
+    site_to_hand_on_ = std::exchange(site_to_take_, nullptr);
   }
   if (site_to_hand_on_ && wiring_.tracked_scans.try_send(SharedSite{site_to_hand_on_})) site_to_hand_on_.reset();
 }

@@ -58,6 +58,7 @@ class LocalizationStage {
   void take_revisions(std::uint32_t scan);
   void take_transients(std::uint32_t scan);
   void pilot(const TrackedScan& tracked);
+  void hear_of_sites();
   void take_sites(const Scan& scan);
   void note(const SetSite& set);
   void take_commands(const Scan& scan);
@@ -86,6 +87,7 @@ class LocalizationStage {
   Pulse pulse_;
   bool mapping_enabled_;
   bool is_paused_ = false;
+  SharedSite site_to_take_;     // before the next scan; null: none
   SharedSite site_to_hand_on_;  // the delta thread has it not yet; null: it has
   std::uint32_t first_revision_;
   std::uint64_t first_map_;

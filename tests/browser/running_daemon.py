@@ -22,15 +22,17 @@ def free_port():
 
 class RunningDaemon:
     """Simulator and daemon, until the `with` block ends. `port` 0: without a page. `token`: asked of every viewer. `settings`: more of them.
-    `places`: settings that name a file in the daemon's folder."""
+    `places`: settings that name a file in the daemon's folder. `files`: what stands there at the start, by name."""
 
-    def __init__(self, port=None, change_every_s=15, token=None, settings=None, places=None):
+    def __init__(self, port=None, change_every_s=15, token=None, settings=None, places=None, files=None):
         self.places = places or {}
         self.settings = settings or {}
         self.port = free_port() if port is None else port
         self.url = f"http://127.0.0.1:{self.port}/"
         self.folder = tempfile.TemporaryDirectory(prefix="deltamap-page-")
         self.place = pathlib.Path(self.folder.name)
+        for name, text in (files or {}).items():
+            (self.place / name).write_text(text)
         self.token = token
         if token:
             (self.place / "token").write_text(token + "\n")

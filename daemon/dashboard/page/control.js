@@ -35,6 +35,7 @@ export class Control {
   async allow(allowed) {
     by_id("controls").hidden = !allowed;
     by_id("drive").hidden = by_id("wander").hidden = !allowed?.drive;
+    this.draws = Boolean(allowed?.draw);
     this.set_locked(Boolean(allowed) && await is_locked());
   }
 
@@ -42,10 +43,11 @@ export class Control {
   set_locked(is_locked) {
     by_id("unlock").hidden = !is_locked;
     by_id("controls").classList.toggle("locked", is_locked);
+    by_id("draw").hidden = is_locked || !this.draws;
   }
 
   link(link) {
-    for (const button of by_id("controls").querySelectorAll("button:not(#stop)")) button.disabled = link !== "live";
+    for (const button of [...by_id("controls").querySelectorAll("button:not(#stop)"), by_id("draw")]) button.disabled = link !== "live";
     if (link === "lost") this.hand.end("the connection is lost");
   }
 

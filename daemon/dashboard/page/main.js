@@ -6,6 +6,7 @@ import { add_changes, clear_changes, mark_picked } from "./changes.js";
 import { Charts } from "./charts.js";
 import { Connection } from "./connection.js";
 import { Control } from "./control.js";
+import { draw_drawing, Drawing } from "./drawing.js";
 import { explain } from "./glossary.js";
 import { History } from "./history.js";
 import { Incidents } from "./incidents.js";
@@ -51,6 +52,7 @@ const view = new MapView(by_id("map"), (context) => {
   for (const layer of LAYERS) if (is_drawn(layer)) layer.draw(context, view, model);
   draw_delta(context, view, model);
   draw_wish(context, view, model);
+  draw_drawing(context, view, model);
   draw_scale_bar(context, view);
 }, covered);
 const cover = new ResizeObserver(() => view.take_cover());
@@ -137,6 +139,11 @@ const bays = new Bays(model, (bay) => {
 }, () => view.draw_soon());
 
 const zones = new ZoneWatch(model, () => view.draw_soon());
+const drawing = new Drawing(view, model, control.row, () => {
+  bays.asked = -Infinity;
+  bays.ask();
+  zones.ask();
+});
 
 run.on_walk = (time) => {
   if (!history.is_open) return;
@@ -190,6 +197,7 @@ const on = {
     things.clear();
     bays.clear();
     zones.clear();
+    if (!hello.control?.draw) drawing.end();
     history.close();
     model.samples.length = model.changes.length = 0;  // the stream begins with the past
     model.particles = model.stored = [];
@@ -246,4 +254,4 @@ const on = {
 };
 
 const connection = new Connection(on);
-window.deltamap = { model, view, charts, control, history, run, connection };  // to look at in the browser's console
+window.deltamap = { model, view, charts, control, drawing, history, run, connection };  // to look at in the browser's console

@@ -22,6 +22,7 @@ export class Relocalize {
   get is_on() { return this.view.hand === this; }
 
   begin() {
+    this.view.hand?.end?.();  // whoever else has the map
     this.view.hand = this;
     this.has_asked = false;
     this.view.set_follow(false);

@@ -51,6 +51,29 @@ TEST(Request, AnUndoNamesARevisionOrAThing) {
     EXPECT_EQ(request_of_line(line).refused, "'undo' of a thing needs its id: 1, 2 …") << line;
 }
 
+TEST(Request, ABayOrZoneComesWithTheVersionOfItsList) {
+  const std::string place = R"({"zoneId":"gate","vertices":[[4.0,4.0],[6.0,4.0],[6.0,6.0]]})";
+  const auto edit = [](PlaceKind kind, const std::string& of, const std::string& what) {
+    Request request{Kind::kEditSite, {}};
+    request.edit = {kind, "00ff", of, what};
+    return request;
+  };
+  const std::vector<std::pair<Request, std::string>> edits{
+      {edit(PlaceKind::kZone, "", place), "zone drawn"},
+      {edit(PlaceKind::kZone, "gate", place), "zone 'gate' changed"},
+      {edit(PlaceKind::kBay, "B4", ""), "bay 'B4' taken away"}};
+  for (const auto& [request, words] : edits) {
+    EXPECT_EQ(request_of_line(line_of(request)).request, request) << line_of(request);
+    EXPECT_EQ(words_of(request), words);
+  }
+  EXPECT_EQ(line_of(edits[2].first), R"({"command":"bay","version":"00ff","of":"B4"})");
+  for (const char* line :
+       {R"({"command":"zone","place":{}})", R"({"command":"zone","version":"00ff"})",
+        R"({"command":"bay","version":7,"of":"B4"})", R"({"command":"bay","version":"1","place":[]})",
+        R"({"command":"bay","version":"1","of":"B4","place":"B4"})"})
+    EXPECT_EQ(request_of_line(line).refused, "a bay or zone needs version, and place or of") << line;
+}
+
 TEST(Request, WhatIsWrongIsSaidInOneLine) {
   const auto refusal = [](const std::string& line) {
     const RequestAnswer answer = request_of_line(line);

@@ -200,6 +200,37 @@ TEST_F(PageCommandsTest, WithoutATokenNothingThatMovesTheRobotIsDone) {
   });
 }
 
+TEST_F(PageCommandsTest, BaysAndZonesAreDrawnOverTheListThatThePageReads) {
+  settings_.zones.file = folder_.write("zones.yaml", "zones:\n").string();
+  const auto site = [&] {
+    return Json::parse(WebClient{settings_.dashboard.port}.got("/api/site", headers_).body)["zones"];
+  };
+  const auto draw = [&](const std::string& version) {
+    return posted(Json{{"command", "zone"},
+                       {"version", version},
+                       {"place", {{"zoneId", "dock"}, {"zoneType", "FROZEN"}, {"vertices", {{1, 1}, {2, 1}, {2, 2}}}}}}
+                      .dump());
+  };
+  run([&](test::SimulatedPorts&) {
+    const Told told = draw(site()["version"]);
+    EXPECT_EQ(told.status, 403) << "as whatever changes where the robot drives";
+    EXPECT_EQ(told.json["error"], "what changes where the robot drives needs 'dashboard.token_file'");
+  });
+  ask_for_token();
+  run([&](test::SimulatedPorts&) {
+    const std::string version = site()["version"];
+    EXPECT_EQ(site()["file"], settings_.zones.file);
+    EXPECT_EQ(draw(version).status, 200);
+    EXPECT_EQ(site()["places"][0],
+              (Json{{"zoneId", "dock"}, {"zoneType", "FROZEN"}, {"vertices", {{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}}}}));
+    const Told late = draw(version);
+    EXPECT_EQ(late.status, 409) << late.json;
+    EXPECT_NE(late.json["error"].get<std::string>().find("look at them again"), std::string::npos);
+    headers_ = "";
+    EXPECT_EQ(WebClient{settings_.dashboard.port}.posted("/api/command", "{}", "").status, 401) << "a wrong token";
+  });
+}
+
 TEST_F(PageCommandsTest, ByHandItMovesAndStandsAtReleaseAndAgainstNobodysWill) {
   ask_for_token();
   run([&](test::SimulatedPorts& ports) {
