@@ -55,6 +55,7 @@ inline constexpr const char* kIncidentSettings = "settings.yaml";
 inline constexpr const char* kIncidentLog = "log.txt";
 inline constexpr const char* kIncidentWords = "words.txt";
 inline constexpr const char* kIncidentFacts = "incident.json";
+inline constexpr const char* kIncidentPicture = "picture.png";  ///< where a scan had been localized
 inline constexpr const char* kIncidentPin = "pinned";
 
 [[nodiscard]] std::string json_text(const Incident& incident);

@@ -6,8 +6,11 @@
 #include <system_error>
 #include <utility>
 
+#include "core/files/replace_file.hpp"
 #include "daemon/incidents/ended_run.hpp"
+#include "daemon/incidents/incident_picture.hpp"
 #include "daemon/incidents/left_ring.hpp"
+#include "daemon/incidents/recorded_scan.hpp"
 #include "daemon/records/journal.hpp"
 #include "daemon/settings/settings_documents.hpp"
 #include "daemon/steps/run_begin.hpp"
@@ -29,6 +32,26 @@ ByteRecord note_at(Timestamp stamp, std::string_view note) {
   record.stamp = stamp;
   record.note = note;
   return record;
+}
+
+constexpr double kLeastOtherShare = 0.01;  // of the belief: with less another pose is not worth showing
+constexpr double kScanBeforeS = 5.0;       // what is decoded at least: the laser may have been silent for a while
+
+/// The newest row with its scan, on the newest map that is known here.
+void draw(const std::filesystem::path& file, SegmentRing& ring, const Settings& settings, const LocalizationRow& row,
+          const OccupancyGrid& map) {
+  const SegmentRing::Segment& from = ring.segment_at(row.time - duration_from_seconds(kScanBeforeS));
+  const auto records = [&](const TakeByteRecord& take) {
+    for (const ByteRecord& said : from.so_far.beginning({}, from.began)) take(said);
+    ring.read_from(from, take);
+  };
+  const bool has_other = row.belief.other_share >= kLeastOtherShare;
+  replace_file(file,
+               incident_picture({.map = map,
+                                 .map_from_robot = row.map_from_robot,
+                                 .covariance = row.covariance,
+                                 .map_from_other = has_other ? std::optional{row.belief.map_from_other} : std::nullopt,
+                                 .scan = recorded_scan(settings, row.time, records)}));
 }
 
 }  // namespace
@@ -150,6 +173,11 @@ void IncidentKeeper::raise(IncidentEvent event, Timestamp now) {
   if (!is_kept) return hooks_.warn("an incident is not kept (" + event.words + "): " + output_.why());
   until_ = wanted;
   hooks_.log("incident " + open_->incident().name + ": " + event.words);
+  if (newest_) {
+    const OccupancyGrid& map = checkpoint_ ? *checkpoint_->map : *options_.map;
+    (void)output_.attempt(now,
+                          [&] { draw(open_->path() / kIncidentPicture, *ring_, options_.settings, *newest_, map); });
+  }
   for (const std::string& line : within_limits(options_.settings.incidents, open_->incident().name)) hooks_.log(line);
 }
 

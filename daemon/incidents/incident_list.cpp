@@ -37,6 +37,11 @@ std::string place_text(const Incident& incident) {
   return text;
 }
 
+bool has_picture(const StoredIncident& stored) {
+  std::error_code error;
+  return fs::is_regular_file(stored.folder / kIncidentPicture, error);
+}
+
 Json listed(const StoredIncident& stored) {
   const Incident& incident = stored.incident;
   const IncidentEvent& first = incident.events.front();
@@ -49,7 +54,8 @@ Json listed(const StoredIncident& stored) {
             {"revision", incident.revision},
             {"bytes", stored.bytes},
             {"pinned", stored.is_pinned},
-            {"complete", incident.is_complete()}};
+            {"complete", incident.is_complete()},
+            {"picture", has_picture(stored)}};
   if (const auto& pose = incident.map_from_robot)
     json["pose"] = {{"x_m", pose->x}, {"y_m", pose->y}, {"heading_deg", degrees(pose->theta)}};
   return json;
@@ -109,6 +115,13 @@ std::string incidents_reply(const IncidentSettings& settings) {
 std::optional<std::string> words_of_incident(const fs::path& folder, std::string_view name) {
   for (const StoredIncident& stored : incidents_in(folder)) {
     if (stored.folder.filename() == name) return words_of(stored.incident);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> picture_of_incident(const fs::path& folder, std::string_view name) {
+  for (const StoredIncident& stored : incidents_in(folder)) {
+    if (stored.folder.filename() == name && has_picture(stored)) return text_of_file(stored.folder / kIncidentPicture);
   }
   return std::nullopt;
 }

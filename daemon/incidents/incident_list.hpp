@@ -25,7 +25,7 @@ struct StoredIncident {
 /// One line of a list: "20261130T030012Z-lost  8.1 MB  at 1.20, 3.40, 90°  the pose was lost".
 [[nodiscard]] std::string line_of(const StoredIncident& stored);
 
-/// A JSON array of them: name, kind, time, words, pose, bytes, pinned, complete.
+/// A JSON array of them: name, kind, time, words, pose, bytes, pinned, complete, picture.
 [[nodiscard]] std::string json_of(const std::vector<StoredIncident>& all);
 /// {"folder":…,"incidents":[…]} of a folder; both empty where none are kept.
 [[nodiscard]] std::string incidents_json(const std::filesystem::path& folder);
@@ -34,5 +34,10 @@ struct StoredIncident {
 [[nodiscard]] std::string incidents_reply(const IncidentSettings& settings);
 /// The page in words of one; nothing where the folder holds none of that name.
 [[nodiscard]] std::optional<std::string> words_of_incident(const std::filesystem::path& folder, std::string_view name);
+
+/// Its picture, a PNG; nothing where it has none, or the folder holds none of that name. Throws std::runtime_error
+/// where it cannot be read.
+[[nodiscard]] std::optional<std::string> picture_of_incident(const std::filesystem::path& folder,
+                                                             std::string_view name);
 
 }  // namespace deltamap::daemon

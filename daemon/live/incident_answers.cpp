@@ -11,6 +11,7 @@ namespace deltamap::daemon {
 namespace {
 
 constexpr std::string_view kList = "/api/incidents";
+constexpr std::string_view kPicture = "/picture.png";
 
 }  // namespace
 
@@ -18,7 +19,11 @@ dashboard::Answer incidents_answer(const std::filesystem::path& folder, std::str
   if (path == kList) return {.type = "application/json", .body = incidents_json(folder) + "\n"};
   const bool names_one = path.size() > kList.size() + 1 && path[kList.size()] == '/';
   if (names_one && !folder.empty()) {
-    if (auto words = words_of_incident(folder, path.substr(kList.size() + 1)))
+    const std::string_view name = path.substr(kList.size() + 1);
+    if (name.ends_with(kPicture)) {
+      if (auto png = picture_of_incident(folder, name.substr(0, name.size() - kPicture.size())))
+        return {.type = "image/png", .body = *std::move(png)};
+    } else if (auto words = words_of_incident(folder, name))
       return {.type = "text/plain; charset=utf-8", .body = *std::move(words)};
   }
   return {.status = 404, .body = "no such incident\n"};

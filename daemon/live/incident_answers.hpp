@@ -9,7 +9,8 @@
 
 namespace deltamap::daemon {
 
-/// /api/incidents: the list; /api/incidents/NAME: that one's page in words. 404 for every other path.
+/// /api/incidents: the list; /api/incidents/NAME: that one's page in words; /api/incidents/NAME/picture.png. 404 for
+/// every other path.
 [[nodiscard]] dashboard::Answer incidents_answer(const std::filesystem::path& folder, std::string_view path);
 
 }  // namespace deltamap::daemon

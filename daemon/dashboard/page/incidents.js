@@ -9,6 +9,20 @@ const MOST = 20;
 
 const by_id = (id) => document.getElementById(id);
 
+/// A small one that leads to the whole.
+function picture_of(incident) {
+  const link = document.createElement("a");
+  link.href = `/api/incidents/${incident.name}/picture.png`;
+  link.target = "_blank";
+  link.rel = "noopener";
+  const picture = document.createElement("img");
+  picture.src = link.href;
+  picture.loading = "lazy";
+  picture.alt = `map, scan and pose at the moment of ${incident.kind}`;
+  link.append(picture);
+  return link;
+}
+
 function item_of(incident) {
   const item = document.createElement("li");
   const link = document.createElement("a");
@@ -22,6 +36,7 @@ function item_of(incident) {
   what.className = "what";
   what.textContent = incident.words;
   item.append(link, time, what);
+  if (incident.picture) item.append(picture_of(incident));
   return item;
 }
 

@@ -96,6 +96,7 @@ TEST_F(DashboardDeskTest, ListsIncidentsAndTellsOneInWords) {
   incident.events = {{IncidentKind::kLost, timestamp_from_ns(1'764'471'612'000'000'000), "the pose was lost"}};
   std::filesystem::create_directories(folder.path() / incident.name);
   std::ofstream(folder.path() / incident.name / kIncidentFacts) << json_text(incident);
+  std::ofstream(folder.path() / incident.name / kIncidentPicture) << "a picture";
   settings_.incidents.folder = folder.path();
   start();
   const Json list = Json::parse(got("/api/incidents").body);
@@ -104,8 +105,12 @@ TEST_F(DashboardDeskTest, ListsIncidentsAndTellsOneInWords) {
   const WebAnswer words = got("/api/incidents/" + incident.name);
   EXPECT_EQ(words.status, 200);
   EXPECT_EQ(words.body, words_of(incident));
-  for (const char* elsewhere :
-       {"/api/incidents/", "/api/incidents/..", "/api/incidents/../../etc/passwd", "/api/incidentsx"})
+  EXPECT_EQ(list["incidents"][0]["picture"], true);
+  const WebAnswer picture = got("/api/incidents/" + incident.name + "/picture.png");
+  EXPECT_EQ(picture.headers.at("Content-Type"), "image/png");
+  EXPECT_EQ(picture.body, "a picture");
+  for (const char* elsewhere : {"/api/incidents/", "/api/incidents/x/picture.png", "/api/incidents/picture.png",
+                                "/api/incidents/..", "/api/incidents/../../etc/passwd", "/api/incidentsx"})
     EXPECT_EQ(got(elsewhere).status, 404) << elsewhere;
 }
 
