@@ -147,13 +147,23 @@ def check(tool, recording):
     unnamed = [name for names in theirs.names.values() for name in names if name.startswith(("packet of unknown", "command "))]
     print("%s: %d frames, %d notes, %d bytes of garbage, %d malformed, %d without a name" %
           (pathlib.Path(recording).name, sum(map(len, theirs.names.values())), len(theirs.notes), sum(theirs.garbage.values()), malformed, len(unnamed)))
-    return unnamed
+    return {"frames": sum(map(len, theirs.names.values())), "kinds": {(*line, name) for line, names in theirs.names.items() for name in names},
+            "notes": len(theirs.notes), "garbage": sum(theirs.garbage.values()), "malformed": malformed, "unnamed": len(unnamed)}
+
+
+def about_tshark():
+    """What it says of itself; empty: it is not here."""
+    return subprocess.run(["tshark", "--version"], capture_output=True, text=True).stdout if shutil.which("tshark") else ""
+
+
+def has_lua(about):
+    return bool(re.search(r"with\s+Lua", about))
 
 
 def main():
     tool = pathlib.Path(sys.argv[1]) / "deltamap"
-    about = subprocess.run(["tshark", "--version"], capture_output=True, text=True).stdout if shutil.which("tshark") else ""
-    if not re.search(r"with\s+Lua", about):
+    about = about_tshark()
+    if not has_lua(about):
         print("skipped: tshark with Lua is not here (apt-get install tshark)")
         sys.exit(77)
     with tempfile.TemporaryDirectory() as folder:
@@ -167,4 +177,5 @@ def main():
     sys.exit(1 if failures else 0)
 
 
-main()
+if __name__ == "__main__":
+    main()
