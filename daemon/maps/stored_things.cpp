@@ -18,12 +18,14 @@ bool takes_back(const StoredRevision& revision) {
 
 }  // namespace
 
-Things things_of(const mapping::store::MapStore& store, const ThingTold& told, const std::function<void()>& beat) {
-  Things things;
+Things things_of(const mapping::store::MapStore& store, const mapping::things::ThingsParams& params,
+                 const ThingTold& told, const std::function<void()>& beat, std::uint32_t newest) {
+  Things things{params};
   OccupancyGrid map;
   for (const StoredRevision& revision : store.history()) {
     if (beat) beat();
     if (revision.refused) continue;
+    if (revision.number > newest) break;
     if (map.box().empty()) {  // the first that the store holds
       map = store.grid(revision.number);
       continue;

@@ -12,8 +12,8 @@ namespace deltamap::daemon {
 using mapping::things::Thing;
 using mapping::things::ThingEvent;
 
-ThingsKeeper::ThingsKeeper(const Options& options, OutputBoard& board, const RetryingOutput::Warn& warn,
-                           Timestamp now) {
+ThingsKeeper::ThingsKeeper(const Options& options, OutputBoard& board, const RetryingOutput::Warn& warn, Timestamp now)
+    : things_{options.params} {
   if (options.out) {
     const auto file = *options.out / "things.jsonl";
     out_.emplace(file, RetryingOutput{"things", file, board, warn});
@@ -25,7 +25,7 @@ ThingsKeeper::ThingsKeeper(const Options& options, OutputBoard& board, const Ret
   }
   if (options.store == nullptr) return;
   try {
-    things_ = things_of(*options.store, [&](const ThingEvent& event) {
+    things_ = things_of(*options.store, options.params, [&](const ThingEvent& event) {
       if (kept_) kept_->write(json_line(event), now);
     });
   } catch (const std::exception& error) {
@@ -36,12 +36,22 @@ ThingsKeeper::ThingsKeeper(const Options& options, OutputBoard& board, const Ret
 
 std::vector<ThingEvent> ThingsKeeper::take(const MapStep::Result& result, Timestamp now) {
   std::vector<ThingEvent> events = take_result(things_, result);
+  write(events, now);
+  return events;
+}
+
+std::vector<ThingEvent> ThingsKeeper::look(const TrackedScan& tracked, Timestamp now) {
+  std::vector<ThingEvent> events = things_.look(tracked);
+  write(events, now);
+  return events;
+}
+
+void ThingsKeeper::write(const std::vector<ThingEvent>& events, Timestamp now) {
   for (const ThingEvent& event : events) {
     if (out_) out_->write(json_line(event), now);
     if (kept_) kept_->write(json_line(event), now);
   }
   if (!events.empty()) retry(now);
-  return events;
 }
 
 std::shared_ptr<const ThingList> ThingsKeeper::list() const {

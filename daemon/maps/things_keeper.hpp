@@ -26,12 +26,15 @@ class ThingsKeeper {
     const mapping::store::MapStore* store = nullptr;  ///< read once, at the start; null: nothing came before
     std::optional<std::filesystem::path> out{};       ///< an existing folder; nothing: no file there
     std::filesystem::path kept{};                     ///< beside the store; empty: no file there
+    mapping::things::ThingsParams params{};
   };
   /// Begins both files anew. A store that cannot be read is warned of: then things count from here.
   ThingsKeeper(const Options& options, OutputBoard& board, const RetryingOutput::Warn& warn, Timestamp now);
 
   /// What a revision tells; nothing of a refusal.
   std::vector<mapping::things::ThingEvent> take(const MapStep::Result& result, Timestamp now);
+  /// What a scan whose pose holds takes back of what was assumed.
+  std::vector<mapping::things::ThingEvent> look(const TrackedScan& tracked, Timestamp now);
   [[nodiscard]] std::shared_ptr<const ThingList> list() const;
   /// What sets the thing's cells back to what they were before it. Throws std::runtime_error: one line that says why
   /// there is nothing to do.
@@ -41,6 +44,8 @@ class ThingsKeeper {
   void close(Timestamp now);
 
  private:
+  void write(const std::vector<mapping::things::ThingEvent>& events, Timestamp now);
+
   mapping::things::Things things_;
   std::optional<LiveLines> out_;
   std::optional<LiveLines> kept_;

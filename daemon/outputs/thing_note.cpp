@@ -25,7 +25,8 @@ ThingJson outline_as_json(const std::optional<Outline>& outline) {
                  {"width_m", in_mm(outline->width_m)},
                  {"heading_deg", rounded(degrees(outline->heading_rad), 10.0)},
                  {"polygon_m", ThingJson::array()},
-                 {"sides_seen", outline->seen}};
+                 {"sides_seen", outline->seen},
+                 {"sides_assumed", outline->assumed}};
   for (const Point2& corner : corners(*outline)) json["polygon_m"].push_back({in_mm(corner.x()), in_mm(corner.y())});
   return json;
 }

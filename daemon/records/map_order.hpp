@@ -34,8 +34,10 @@ struct MapOrder {
 
 /// What the delta thread reads, in order.
 using DeltaWork = std::variant<TrackedScan, MapOrder, SharedSite>;
+/// A scan that is held against what is assumed of things.
+using ThingLook = std::shared_ptr<const TrackedScan>;
 /// What the map thread reads, in order.
-using MapWork = std::variant<MapRequest, MapOrder, mapping::bays::BayEvent, SharedSite>;
+using MapWork = std::variant<MapRequest, MapOrder, mapping::bays::BayEvent, SharedSite, ThingLook>;
 
 /// "undo of 7 by an operator", "rolled back to 3 …", "undo of thing 12 …": the reason of the revision that comes of it.
 [[nodiscard]] std::string reason_of(const MapOrder& order);

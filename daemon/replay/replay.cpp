@@ -124,6 +124,7 @@ void Replay::look_for_changes(const TrackedScan& tracked) {
   const std::optional<MapRequest> request = run_.look_for_changes(tracked);
   if (request) update_map(*request, tracked.scan.number);
   for (const mapping::bays::BayEvent& event : run_.bay_events()) output_.told(event);
+  if (thing_looks_.is_due(tracked, run_.store_scan().pose_holds())) output_.look(tracked);
   if (job_.watch.bays) job_.watch.bays(run_.bays(), tracked.scan.time);
 }
 

@@ -14,6 +14,7 @@
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/replay/replay_start.hpp"
 #include "daemon/replay/sequential_run.hpp"
+#include "daemon/steps/thing_looks.hpp"
 
 namespace deltamap::daemon {
 
@@ -55,6 +56,7 @@ class Replay {
   bool has_begun_ = false;
   bool is_paused_ = false;
   SequentialRun run_;
+  ThingLooks thing_looks_;
   double run_cpu_s_ = 0.0;  // in all
   double recording_cpu_s_ = 0.0;
   RunReport report_;

@@ -10,7 +10,7 @@
 namespace deltamap::daemon {
 
 FolderOutput::FolderOutput(const std::filesystem::path& folder, const OccupancyGrid& first,
-                           std::uint32_t first_revision)
+                           std::uint32_t first_revision, const mapping::things::ThingsParams& things)
     : folder_{folder},
       first_revision_{first_revision},
       store_{folder / "map_store.sqlite", first},
@@ -18,7 +18,8 @@ FolderOutput::FolderOutput(const std::filesystem::path& folder, const OccupancyG
       localization_log_{folder / "localization.csv"},
       changes_{folder / "changes.jsonl"},
       told_things_{folder / "things.jsonl"},
-      told_bays_{folder / "bays.jsonl"} {
+      told_bays_{folder / "bays.jsonl"},
+      things_{things} {
   localization_log_.write(csv_header());
 }
 
@@ -36,6 +37,10 @@ void FolderOutput::changed(const MapStep::Result& result, std::string_view metho
 }
 
 void FolderOutput::told(const mapping::bays::BayEvent& event) { told_bays_.write(json_line(event, things_.all())); }
+
+void FolderOutput::look(const TrackedScan& tracked) {
+  for (const auto& event : things_.look(tracked)) told_things_.write(json_line(event));
+}
 
 void FolderOutput::settled() { store_.set_provisional({}); }
 

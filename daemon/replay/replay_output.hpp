@@ -27,6 +27,8 @@ class ReplayOutput {
   virtual void changed(const MapStep::Result& result, std::string_view method) = 0;
   /// A bay's state is another one.
   virtual void told(const mapping::bays::BayEvent& event) = 0;
+  /// A scan that is held against what is assumed of things.
+  virtual void look(const TrackedScan& tracked) = 0;
   /// No revision is provisional any more.
   virtual void settled() = 0;
   /// The end, with the newest map.
@@ -37,12 +39,14 @@ class ReplayOutput {
 class FolderOutput : public ReplayOutput {
  public:
   /// `first_revision`: the number of the map that the run starts on.
-  FolderOutput(const std::filesystem::path& folder, const OccupancyGrid& first, std::uint32_t first_revision);
+  FolderOutput(const std::filesystem::path& folder, const OccupancyGrid& first, std::uint32_t first_revision,
+               const mapping::things::ThingsParams& things = {});
 
   void localized(const LocalizationRow& row) override;
   void passed_over(const TrajectoryPoint& point) override;
   void changed(const MapStep::Result& result, std::string_view method) override;
   void told(const mapping::bays::BayEvent& event) override;
+  void look(const TrackedScan& tracked) override;
   void settled() override;
   void finish(const OccupancyGrid& newest) override;
 

@@ -44,7 +44,7 @@ RunReport run_replay(const ReplayJob& job, const ReplayProgress& progress) {
   RunReport report;
   {
     FileMessages source{job.recording, {job.from_s, job.to_s}, job.settings};
-    FolderOutput output{staging.path(), *begun.start.map, begun.start.revision};
+    FolderOutput output{staging.path(), *begun.start.map, begun.start.revision, job.settings.mapping.things};
     Replay replay{{job, recorded, begun, source, output}};
     replay.run(progress);
     report = replay.finish();

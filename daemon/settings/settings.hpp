@@ -21,6 +21,7 @@
 #include "mapping/paper/divergence_ratio.hpp"
 #include "mapping/store/retention.hpp"
 #include "mapping/store_scan.hpp"
+#include "mapping/things/body.hpp"
 #include "navigation/drive_mode.hpp"
 #include "navigation/safety.hpp"
 #include "navigation/wander.hpp"
@@ -52,6 +53,7 @@ struct MappingSettings {
   mapping::paper::DivergenceRatioParams divergence;  ///< w_fast, w_slow, r_d: mapping paused or not
   mapping::StoreScanParams store_scan;
   mapping::MapUpdateParams update;
+  mapping::things::ThingsParams things;
 };
 
 struct NavigationSettings {

@@ -61,6 +61,8 @@ void add_mapping_keys(MappingSettings& settings, Keys& keys) {
   add_gate(store_scan.gate, keys);
   add_paper(settings.divergence, store_scan.delta_phase, keys);
   add_paper_update(settings.update.paper, keys);
+  keys.push_back(flag_key("mapping.things.assume_sides", settings.things.assumes_sides,
+                          "take sides of a thing that nobody has seen to be there where those seen fix its rectangle"));
 }
 
 }  // namespace deltamap::daemon

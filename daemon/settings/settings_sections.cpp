@@ -27,6 +27,7 @@ const std::vector<SettingSection>& setting_sections() {
       {"mapping.gate", "write gate: when the pose is sure enough to write to the map"},
       {"mapping.paper", "method paper: Δ-awareness as published"},
       {"mapping.paper.update", "method paper: what a merge must fulfil"},
+      {"mapping.things", "bodies that have come, gone or moved, as revisions tell of them"},
       {"navigation", "whether and how the robot drives by itself"},
       {"navigation.safety", "limits that no command exceeds"},
       {"navigation.wander", "driving about: mode wander"},

@@ -9,7 +9,8 @@ namespace deltamap::daemon {
 namespace {
 
 constexpr std::chrono::seconds kLookAgainAfter{1};
-constexpr double kBaysPeriod_s = 0.5;  // of their ages, where no state is another one
+constexpr double kBaysPeriod_s = 0.5;            // of their ages, where no state is another one
+constexpr std::size_t kMostWaitingForLook = 64;  // half a minute of them, 8 kB each; the next ones come soon
 
 const ScanSet* set_in(const MapWork& work) {
   const auto* request = std::get_if<MapRequest>(&work);
@@ -67,6 +68,8 @@ void DeltaStage::look_for_changes(const TrackedScan& tracked) {
     hand_over(*std::move(request));
   }
   show_bays(std::move(bay_events), tracked.scan.time);
+  if (thing_looks_.is_due(tracked, store_scan_.pose_holds()) && waiting_.size() < kMostWaitingForLook)
+    hand_over(std::make_shared<const TrackedScan>(tracked));
   if (wiring_.shows_scans()) show_scans();
 }
 

@@ -15,6 +15,7 @@
 #include "daemon/settings/settings.hpp"
 #include "daemon/stages/gate_watch.hpp"
 #include "daemon/steps/bay_step.hpp"
+#include "daemon/steps/thing_looks.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "daemon/telemetry/telemetry.hpp"
 #include "mapping/store_scan.hpp"
@@ -63,6 +64,7 @@ class DeltaStage {
   mapping::StoreScan store_scan_;
   BayStep bays_;
   Timestamp bays_shown_;
+  ThingLooks thing_looks_;
   GateWatch gate_watch_;
   std::uint32_t transients_sent_ = 0;   // number of the newest snapshot that the localizer has been sent
   std::uint32_t transients_shown_ = 0;  // and that the page has

@@ -61,7 +61,8 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
       step_{settings, start},
       things_{{.store = store.store ? &*store.store : nullptr,
                .out = out,
-               .kept = memory_places(settings.map.store).things},
+               .kept = memory_places(settings.map.store).things,
+               .params = settings.mapping.things},
               wiring_.telemetry.outputs,
               wiring_.warn,
               port_clock_now()},
@@ -103,6 +104,8 @@ void MapStage::take(const MapWork& work) {
     tell_bay(*event);
   } else if (const auto* site = std::get_if<SharedSite>(&work)) {
     step_.set_zones((*site)->zones);
+  } else if (const auto* look = std::get_if<ThingLook>(&work)) {
+    tell_things(things_.look(**look, port_clock_now()));
   } else {
     obey(std::get<MapOrder>(work));
   }
@@ -164,11 +167,10 @@ void MapStage::hand_on(const MapStep::Result& result) {
     (void)wiring_.revisions.try_send(std::move(published));
   }
   outputs_.save(result, port_clock_now());
-  tell_things(result);
+  tell_things(things_.take(result, port_clock_now()));
 }
 
-void MapStage::tell_things(const MapStep::Result& result) {
-  const auto events = things_.take(result, port_clock_now());
+void MapStage::tell_things(const std::vector<mapping::things::ThingEvent>& events) {
   for (const auto& event : events) {
     if (event.is_new) wiring_.log("thing " + std::to_string(event.thing.id) + ": " + words_of(event.thing));
   }

@@ -55,7 +55,7 @@ class MapStage {
   /// Throws std::runtime_error: one line that says why there is nothing to do.
   [[nodiscard]] mapping::store::MapStore::Undoing cells_of(const MapOrder& order) const;
   void note(const SetCells& set);
-  void tell_things(const MapStep::Result& result);
+  void tell_things(const std::vector<mapping::things::ThingEvent>& events);
   void tell_bay(const mapping::bays::BayEvent& event);
   /// To the localizer, the live page and the disk.
   void hand_on(const MapStep::Result& result);

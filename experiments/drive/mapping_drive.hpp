@@ -43,6 +43,8 @@ class MappingDrive {
 
   [[nodiscard]] simulation::VirtualDrive& drive() { return drive_; }
   [[nodiscard]] const OccupancyGrid& map() const { return *run_->map().map(); }
+  /// Of the newest scan: sure enough to judge what stands there.
+  [[nodiscard]] bool pose_holds() const { return run_->store_scan().pose_holds(); }
   [[nodiscard]] const daemon::LocalizationStep& localization() const { return run_->localization(); }
 
  private:

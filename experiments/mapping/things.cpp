@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "daemon/maps/stored_things.hpp"
+#include "daemon/steps/thing_looks.hpp"
 #include "daemon/telemetry/stage.hpp"
 #include "experiments/drive/first_map.hpp"
 #include "experiments/drive/mapping_drive.hpp"
@@ -15,8 +16,10 @@
 #include "experiments/registry.hpp"
 #include "experiments/watch/mapping_run.hpp"
 #include "experiments/watch/thing_score.hpp"
+#include "mapping/things/assumed.hpp"
 #include "simulation/drawn/unseen_world.hpp"
 #include "simulation/score/change_watch.hpp"
+#include "simulation/score/map_truth.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -25,6 +28,7 @@ constexpr double kLookEvery_s = 0.2;
 constexpr int kLookBeams = 181;
 constexpr int kLookFaceBeams = 3;
 constexpr double kSeenForThings_s = 10.0;
+constexpr double kSolidEvery_s = 60.0;
 constexpr double kThingsMinutes = 30.0;
 constexpr double kQuickThingsMinutes = 5.0;
 
@@ -37,6 +41,28 @@ struct ThingsRun {
   bool knows_start = true;
 };
 
+/// Eq. 11 with what is solid, as the map shows it and with what is assumed of things; both as sums over `looks`.
+struct SolidAcceptance {
+  double seen = 0.0;
+  double assumed = 0.0;
+  int looks = 0;
+  std::size_t cells = 0;        ///< that were assumed
+  std::size_t solid_cells = 0;  ///< of those: truly so
+
+  void add(const simulation::score::MapTruth& truth, OccupancyGrid map, const std::vector<Cell>& assumed_cells) {
+    const simulation::score::CellMask where = truth.seen();
+    const OccupancyGrid solid = truth.solid();
+    seen += simulation::score::map_score(solid, map, where).acceptance;
+    for (const Cell cell : assumed_cells) {
+      map.set(cell, CellState::kOccupied);
+      solid_cells += solid[cell] == CellState::kOccupied ? 1 : 0;
+    }
+    cells += assumed_cells.size();
+    assumed += simulation::score::map_score(solid, map, where).acceptance;
+    ++looks;
+  }
+};
+
 /// What a drive tells of things, and what is true.
 struct Followed {
   std::vector<mapping::things::ThingEvent> events;
@@ -45,33 +71,57 @@ struct Followed {
   std::size_t things = 0;
   std::size_t most_cell_bytes = 0;
   double cpu_s = 0.0;
+  SolidAcceptance solid;
+  AssumedScore assumed;
 };
+
+void add(std::vector<mapping::things::ThingEvent>& events, const std::vector<mapping::things::ThingEvent>& more) {
+  events.insert(events.end(), more.begin(), more.end());
+}
+
+std::vector<simulation::Box> boxes_in(const simulation::World& world) {
+  std::vector<simulation::Box> boxes;
+  for (const simulation::Object& object : world.objects) {
+    if (const auto* box = std::get_if<simulation::Box>(&object.shape)) boxes.push_back(*box);
+  }
+  return boxes;
+}
 
 Followed followed(const ThingsRun& run) {
   Followed all;
   MappingDrive drive{run.scenario, run.drive, run.settings, {run.first}, run.knows_start};
   simulation::score::ChangeWatch watch{run.scenario, run.first->geometry()};
+  simulation::score::MapTruth truth{run.scenario, *run.first};
   mapping::things::Things things;
+  daemon::ThingLooks thing_looks;
   double next_look_s = 0.0;
+  double next_solid_s = kSolidEvery_s;
   for (double passed_s = 0.0; passed_s < 60.0 * run.minutes;) {
     const Mapped scan = drive.next();
     passed_s = scan.passed_s;
     for (const simulation::Change& change : scan.changes)
       watch.apply(change, scan.time, scan.map_from_robot.position());
     for (const simulation::MoverEvent& event : scan.events) watch.apply(event);
+    if (!scan.changes.empty()) truth.see(watch.world());
     if (passed_s >= next_look_s) {
       next_look_s += kLookEvery_s;
       const Pose2 map_from_laser = scan.map_from_robot * run.scenario.laser.optics.robot_from_laser;
-      watch.look(watch.view_from(map_from_laser, run.drive.max_range_m, kLookBeams, scan.about.surfaces()),
-                 kLookEvery_s, kLookFaceBeams);
+      const auto view = watch.view_from(map_from_laser, run.drive.max_range_m, kLookBeams, scan.about.surfaces());
+      watch.look(view, kLookEvery_s, kLookFaceBeams);
+      truth.touch(view);
     }
-    if (!scan.update || !scan.update->revision) continue;
-    ++all.revisions;
     const double began_s = daemon::thread_cpu_s();
-    const auto told = daemon::take_result(things, *scan.update);
+    if (scan.update && scan.update->revision) {
+      ++all.revisions;
+      add(all.events, daemon::take_result(things, *scan.update));
+    }
+    if (thing_looks.is_due(scan.tracked, drive.pose_holds())) add(all.events, things.look(scan.tracked));
     all.cpu_s += daemon::thread_cpu_s() - began_s;
-    all.events.insert(all.events.end(), told.begin(), told.end());
     all.most_cell_bytes = std::max(all.most_cell_bytes, things.cell_bytes());
+    if (passed_s >= next_solid_s) {
+      next_solid_s += kSolidEvery_s;
+      all.solid.add(truth, drive.map(), mapping::things::assumed_cells(things.all(), drive.map()));
+    }
   }
   std::vector<simulation::score::ScoredChange> watched;
   for (const simulation::score::Watched& one : watch.watched()) {
@@ -80,6 +130,7 @@ Followed followed(const ThingsRun& run) {
   }
   all.changes = true_changes(watched, kSeenForThings_s);
   all.things = things.all().size();
+  all.assumed = assumed_score_of(things.all(), boxes_in(watch.world()));
   return all;
 }
 
@@ -103,6 +154,14 @@ Outcome outcome_of(const ThingsRun& run, const std::string& world, std::uint64_t
                      {"wrong_pairs", whole(score.wrong_pairs)},
                      {"revisions", whole(all.revisions)},
                      {"things", whole(all.things)},
+                     {"solid_looks", whole(static_cast<std::size_t>(all.solid.looks))},
+                     {"solid_seen", all.solid.seen},
+                     {"solid_assumed", all.solid.assumed},
+                     {"assumed_cells", whole(all.solid.cells)},
+                     {"assumed_solid", whole(all.solid.solid_cells)},
+                     {"assumed_sides", whole(all.assumed.sides)},
+                     {"assumed_right", whole(all.assumed.right)},
+                     {"assumed_of_seen", whole(all.assumed.of_seen)},
                      {"minutes", run.minutes},
                      {"cell_kb", whole(all.most_cell_bytes) / 1e3},
                      {"revision_cpu_ms", all.revisions == 0 ? 0.0 : 1e3 * all.cpu_s / whole(all.revisions)}};
@@ -178,6 +237,12 @@ void add_figures(Report& report, const std::string& world, const std::vector<con
   const double hours = things_sum(of_it, "minutes") / 60.0;
   add("events told that belong to no change, an hour", things_sum(of_it, "told_of_nothing") / hours, {});
   add("revisions an hour", things_sum(of_it, "revisions") / hours, {});
+  add("solid acceptance, as the map shows it", things_share(of_it, "solid_seen", "solid_looks"), {});
+  add("solid acceptance, with what is assumed", things_share(of_it, "solid_assumed", "solid_looks"),
+      world == "hall" ? std::optional{Target{.least = 0.985}} : std::nullopt);
+  add("assumed cells that are solid", things_share(of_it, "assumed_solid", "assumed_cells"), {});
+  add("assumed sides within 0.15 m at the end", things_share(of_it, "assumed_right", "assumed_sides"), {});
+  add("assumed sides of what was seen all around", things_sum(of_it, "assumed_of_seen"), Target{.most = 0.0});
   if (things_sum(of_it, "changes_seen") == 0.0) return;
   add("changes that were seen for 10 s", things_sum(of_it, "changes_seen"), {});
   add("events a change, mean", things_share(of_it, "events", "changes_seen"), Target{.most = 1.1});
@@ -190,9 +255,10 @@ void add_figures(Report& report, const std::string& world, const std::vector<con
 }
 
 TextTable table_of_runs(const std::vector<Outcome>& outcomes) {
-  constexpr std::array kColumns{"changes_seen", "unfound",     "events",      "most_events", "right",
-                                "right_size",   "moved",       "moved_right", "told",        "told_of_nothing",
-                                "told_moved",   "wrong_pairs", "revisions",   "things"};
+  constexpr std::array kColumns{"changes_seen", "unfound",         "events",        "most_events",
+                                "right",        "right_size",      "moved",         "moved_right",
+                                "told",         "told_of_nothing", "told_moved",    "wrong_pairs",
+                                "revisions",    "things",          "assumed_sides", "assumed_right"};
   TextTable table{"Each run", {"world", "seed"}, {}};
   table.columns.insert(table.columns.end(), kColumns.begin(), kColumns.end());
   for (const Outcome& outcome : outcomes) {

@@ -135,4 +135,22 @@ ThingScore score_of(std::span<const Told> told, std::span<const TrueChange> chan
   return score;
 }
 
+AssumedScore assumed_score_of(std::span<const Thing> things, std::span<const Box> boxes) {
+  AssumedScore score;
+  for (const Thing& thing : things) {
+    if (!thing.at) continue;
+    const auto corners_of_it = corners(*thing.at);
+    for (std::size_t side = 0; side < corners_of_it.size(); ++side) {
+      if (!thing.at->assumed[side]) continue;
+      const Point2 middle = 0.5 * (corners_of_it[side] + corners_of_it[(side + 1) % 4]);
+      ++score.sides;
+      score.right += std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
+        return is_inside(outline_of(box), middle, kSameSize_m) && !is_inside(outline_of(box), middle, -kSameSize_m);
+      });
+      score.of_seen += std::count(thing.at->seen.begin(), thing.at->seen.end(), true) == 4 ? 1 : 0;
+    }
+  }
+  return score;
+}
+
 }  // namespace deltamap::experiments

@@ -53,4 +53,14 @@ struct ThingScore {
 
 [[nodiscard]] ThingScore score_of(std::span<const Told> told, std::span<const TrueChange> changes);
 
+struct AssumedScore {
+  std::size_t sides = 0;    ///< that are assumed, of what stands there
+  std::size_t right = 0;    ///< of those: the middle lies on a side of a box, within the tolerance
+  std::size_t of_seen = 0;  ///< of those: of a thing whose four sides were seen
+};
+
+/// `boxes`: what truly stands there.
+[[nodiscard]] AssumedScore assumed_score_of(std::span<const mapping::things::Thing> things,
+                                            std::span<const simulation::Box> boxes);
+
 }  // namespace deltamap::experiments

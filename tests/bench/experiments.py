@@ -87,7 +87,10 @@ Containers come, go and are pushed aside in simulated worlds; what is told of th
 counts once a face of it was in view for 10 s, also where a later one, or one beside it, touched its place before more was seen.
 An event is what was told of a thing until it was told to be of another kind. *Right*: the kind, and the middle of what is told lies on
 the container's own floor. Figures of size are of those. In `pushes` containers stand side by side in rows and are pushed by less
-than a metre: a back that nobody sees cannot tell a move from a body put before the row. In `racks` nothing changes.
+than a metre: where the back is not seen nobody can tell a move from a body put before the row. In `racks` nothing changes.
+
+*Solid acceptance* is Eq. 11 with insides of containers occupied, once a minute: as the map shows it, and with what is assumed of things.
+Assumed cells of a container that has left out of sight count as wrong.
 
 *Events a change* counts a change of which nothing was told as none, so that of the others the mean is higher. *Events "moved" that
 were none* are a share of all events; of the events "moved" they are `wrong_pairs` of `told_moved` in the last table.

@@ -17,9 +17,12 @@
 #include "core/counted.hpp"
 #include "core/files/file_lock.hpp"
 #include "core/files/grid_file.hpp"
+#include "core/files/replace_file.hpp"
 #include "daemon/maps/png_bytes.hpp"
+#include "daemon/maps/stored_things.hpp"
 #include "mapping/registration/acceptance.hpp"
 #include "mapping/store/map_store.hpp"
+#include "mapping/things/assumed.hpp"
 #include "tool/output_file.hpp"
 #include "tool/picture/scene.hpp"
 #include "tool/subcommands.hpp"
@@ -38,6 +41,7 @@ struct HistoryOptions {
   std::string name;
   bool json = false;
   bool cells = false;
+  bool assumed = false;
 };
 
 std::string utc(Timestamp time) {
@@ -119,10 +123,30 @@ void list(const HistoryOptions& options) {
   }
 }
 
+/// The map with the sides and insides of things that are assumed: shade 128, which map_server reads as unknown.
+void write_with_assumed(const MapStore& store, const HistoryOptions& options) {
+  constexpr auto kAssumedShade = static_cast<char>(128);
+  const OccupancyGrid map = store.grid(options.number);
+  const auto things = daemon::things_of(store, {}, {}, {}, options.number).all();
+  std::string picture = pgm_of(map);
+  const auto width = static_cast<std::size_t>(map.width());
+  for (const Cell cell : mapping::things::assumed_cells(things, map)) {
+    const auto from_below = static_cast<std::size_t>(cell.row + 1) * width;  // the picture begins at the top
+    picture[picture.size() - from_below + static_cast<std::size_t>(cell.column)] = kAssumedShade;
+  }
+  const std::filesystem::path image = std::filesystem::path(options.out).replace_extension(".pgm");
+  replace_file(image, picture);
+  replace_file(options.out, yaml_of(map, image.filename().string()));
+}
+
 void write_revision(const HistoryOptions& options) {
   require_output_beside(options.out, options.store);
   require_output_beside(std::filesystem::path(options.out).replace_extension(".pgm"), options.store);
-  write_grid(read_store(options).grid(options.number), options.out);
+  if (options.assumed) {
+    write_with_assumed(read_store(options), options);
+  } else {
+    write_grid(read_store(options).grid(options.number), options.out);
+  }
   if (options.json) std::cout << nlohmann::json{{"number", options.number}, {"map", options.out}}.dump() << '\n';
 }
 
@@ -233,6 +257,8 @@ void add_what_reads(CLI::App& history, const std::shared_ptr<HistoryOptions>& op
   CLI::App* exporter = history.add_subcommand("export", "write revision K as a map");
   exporter->add_option("K", options->number)->required();
   exporter->add_option("OUT", options->out, "map_server YAML to write")->required();
+  exporter->add_flag("--assumed", options->assumed,
+                     "sides and insides of things that are assumed in shade 128: unknown");
   exporter->fallthrough()->callback([options] { write_revision(*options); });
 
   CLI::App* differ = history.add_subcommand("diff", "what changed from revision J to K");

@@ -29,6 +29,7 @@ struct ThingsOptions {
   std::string map;
   bool as_json = false;
   bool events = false;
+  bool seen_only = false;
 };
 
 std::filesystem::path store_in(const std::string& source) {
@@ -68,7 +69,7 @@ void tell_things(const ThingsOptions& options) {
     if (options.as_json) std::cout << daemon::json_line(event);
     if (!options.as_json) print_event(event);
   };
-  const Things things = daemon::things_of(store, tell_event);
+  const Things things = daemon::things_of(store, {.assumes_sides = !options.seen_only}, tell_event);
   if (options.events) return;
   const std::string list = daemon::json_of({things.all(), things.corrections(), things.forgotten()});
   std::cout << (options.as_json ? list + "\n" : things_table(list));
@@ -82,6 +83,7 @@ void add_things(CLI::App& app) {
   command->add_option("SOURCE", options->source, "map store (SQLite), or the folder of a run (--out)")->required();
   command->add_option("--map", options->map, "the first map that the revisions must be of; else that used last");
   command->add_flag("--events", options->events, "each event in its order, as in things.jsonl");
+  command->add_flag("--seen-only", options->seen_only, "without what is assumed of sides that nobody has seen");
   command->add_flag("--json", options->as_json, "as JSON: all things, or with --events a line an event");
   command->callback([options] { tell_things(*options); });
 }

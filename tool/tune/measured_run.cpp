@@ -32,6 +32,7 @@ class Measuring : public daemon::ReplayOutput {
     ++(result.revision ? revisions_ : refused_);
   }
   void told(const mapping::bays::BayEvent& /*event*/) override {}
+  void look(const TrackedScan& /*tracked*/) override {}
   void settled() override {}
   void finish(const OccupancyGrid& newest) override {
     agreement_ = agreement(newest, ends_);

@@ -276,9 +276,13 @@ function sign_thing(context, ink, dashes) {
   context.strokeRect(3, 2, 16, 10);
 }
 
-/// Side by side: what nobody has seen of one that stands there is dashed.
-function outline_thing(context, view, outline, ink, is_picked, dashes_of) {
+/// Side by side: what nobody has seen of one that stands there is dashed, what is assumed to be solid is filled.
+function outline_thing(context, view, outline, ink, is_picked, dashes_of, is_assumed = false) {
   const corners = outline.polygon_m.map(([x, y]) => view.to_screen(x, y));
+  context.fillStyle = ink_of(ink);
+  context.globalAlpha = is_assumed ? 0.12 : 0;
+  context.fill(new Path2D(`M${corners.map((corner) => corner.join(" ")).join("L")}Z`));
+  context.globalAlpha = 1;
   context.strokeStyle = ink_of(ink);
   context.lineWidth = is_picked ? 3.5 : 1.5;
   corners.forEach(([x, y], side) => {
@@ -291,12 +295,16 @@ function outline_thing(context, view, outline, ink, is_picked, dashes_of) {
   context.setLineDash([]);
 }
 
+const NOT_SEEN = [2, 3], ASSUMED = [7, 4];
+
 function draw_things(context, view, { things, picked_thing }) {
   for (const thing of things ?? []) {
     const is_picked = thing === picked_thing;
     if (thing.from && (is_picked || !thing.at)) outline_thing(context, view, thing.from, "--blue", is_picked, () => [6, 2]);
     if (!thing.at) continue;
-    outline_thing(context, view, thing.at, "--red", is_picked, (side) => (thing.at.sides_seen[side] ? [] : [2, 3]));
+    const { sides_seen, sides_assumed = [] } = thing.at;
+    outline_thing(context, view, thing.at, "--red", is_picked, (side) => (sides_seen[side] ? [] : sides_assumed[side] ? ASSUMED : NOT_SEEN),
+                  sides_assumed.includes(true));
     const [x, y] = view.to_screen(thing.at.x_m, thing.at.y_m);
     context.fillStyle = ink_of("--text");
     context.textAlign = "center";
@@ -317,7 +325,8 @@ export const LAYERS = [
   { id: "bays", label: "bays", is_of_now: true, draw: draw_bays,
     keys: ["full", "partly", "empty", "unknown"].map((state) => [`bay ${state}`, (c) => sign_bay(c, state)]) },
   { id: "things", label: "things", is_of_now: true, draw: draw_things,
-    keys: [["stands there, seen sides", (c) => sign_thing(c, "--red", [])], ["stands there, sides that nobody has seen", (c) => sign_thing(c, "--red", [2, 3])],
+    keys: [["stands there, seen sides", (c) => sign_thing(c, "--red", [])], ["stands there, sides that nobody has seen", (c) => sign_thing(c, "--red", NOT_SEEN)],
+           ["not seen, but assumed: the seen sides fix its rectangle", (c) => sign_thing(c, "--red", ASSUMED)],
            ["stood there and has gone", (c) => sign_thing(c, "--blue", [6, 2])]] },
   { id: "stored", label: "scans kept for the map", is_of_now: true, draw: draw_stored,
     keys: [["of the running Δ-phase", (c) => sign_stored(c, false)], ["of a set that waits", (c) => sign_stored(c, true)]] },

@@ -65,12 +65,14 @@ export class Things {
       element.textContent = text;
       return element;
     };
-    const unseen = outline_of(thing).sides_seen.filter((seen) => !seen).length;
+    const { sides_seen, sides_assumed = [] } = outline_of(thing);
+    const unseen = sides_seen.filter((seen) => !seen).length;
+    const not_seen = `${unseen} sides not seen${sides_assumed.includes(true) ? ", assumed" : ""}; `;
     const time = part("time", "", `${span_of(now - thing.last_seen)} ago`);
     time.dateTime = new Date(1000 * thing.last_seen).toISOString();
     const title = part("b", "", String(thing.thing)), what = part("span", "what", thing.words);
     button.append(title, what, time,
-                  part("span", "why", `${thing.at && unseen ? `${unseen} sides not seen; ` : ""}first at ${clock(thing.first_seen)}, M${thing.revisions[0]}`));
+                  part("span", "why", `${thing.at && unseen ? not_seen : ""}first at ${clock(thing.first_seen)}, M${thing.revisions[0]}`));
     for (const element of [title, what]) explain(element, "thing");
     button.addEventListener("click", () => {
       this.model.picked_thing = this.model.picked_thing === thing ? null : thing;

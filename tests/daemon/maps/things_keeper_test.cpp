@@ -57,6 +57,21 @@ TEST_F(ThingsKeeperTest, AfterARestartTheThingsAreTheSameAndGoOn) {
   EXPECT_EQ(events[0].thing.kind, mapping::things::ThingKind::kGone);
 }
 
+TEST_F(ThingsKeeperTest, BeamsThroughWhatIsAssumedAreToldInBothFiles) {
+  ThingsKeeper keeper = begun(nullptr);
+  site.south(kBox).west(kBox);
+  ASSERT_EQ(keeper.take(revision(), test::at_s(1)).size(), 1u);
+  EXPECT_NE(content_of(kept).find("\"sides_assumed\":[true,true,false,false]"), std::string::npos) << content_of(kept);
+  TrackedScan tracked;
+  for (int i = 0; i < 5; ++i) tracked.rays.push_back({{0.0F, 0.0F}, {8.0F, 0.1F * static_cast<float>(i)}});
+  tracked.estimate.map_from_robot = {1.0, 4.8, 0.0};
+  EXPECT_TRUE(keeper.look(tracked, test::at_s(2)).empty());
+  ASSERT_EQ(keeper.look(tracked, test::at_s(3)).size(), 1u);
+  for (const auto& file : {kept, folder.path() / "things.jsonl"}) {
+    EXPECT_NE(content_of(file).find("\"sides_assumed\":[false,false,false,false]"), std::string::npos) << file;
+  }
+}
+
 TEST_F(ThingsKeeperTest, WhatTakesAThingBackSetsItsCellsToWhatTheyWere) {
   const OccupancyGrid before = site.map;
   ThingsKeeper keeper = begun(nullptr);

@@ -90,6 +90,28 @@ TEST_F(ThingsCommand, TellsWhatStandsWhere) {
   EXPECT_NE(table.output.find("1 thing; 0 changed cells belong to none"), std::string::npos) << table.output;
 }
 
+TEST_F(ThingsCommand, WhatIsAssumedIsToldAndExportedAsSuch) {
+  site.number = 3;  // the undo
+  site.south({8.0, 4.0, 10.0, 6.0}).west({8.0, 4.0, 10.0, 6.0});
+  append("evidence");
+  const auto assumed_of = [](const ToolRun& run) {
+    return lines_of(run.output)[0]["things"][1]["at"]["sides_assumed"];
+  };
+  EXPECT_EQ(assumed_of(things({file, "--json"})), (nlohmann::json{true, true, false, false}));
+  EXPECT_EQ(assumed_of(things({file, "--json", "--seen-only"})), (nlohmann::json{false, false, false, false}));
+
+  const std::string plain = (folder.path() / "plain.yaml").string();
+  const std::string marked = (folder.path() / "marked.yaml").string();
+  const std::string newest = std::to_string(site.number);
+  ASSERT_EQ(test::run_deltamap({"map", "history", file, "export", newest, plain}).exit_code, 0);
+  ASSERT_EQ(test::run_deltamap({"map", "history", file, "export", newest, marked, "--assumed"}).exit_code, 0);
+  const Cell inside = site.map.geometry().cell_at({9.5, 5.5});
+  EXPECT_EQ(read_grid(plain).at(inside), CellState::kFree);
+  EXPECT_EQ(read_grid(marked).at(inside), CellState::kUnknown) << "marked, and never free";
+  EXPECT_EQ(read_grid(marked).at(site.map.geometry().cell_at({8.5, 4.0})), CellState::kOccupied);
+  EXPECT_EQ(read_grid(marked).at(site.map.geometry().cell_at({8.5, 3.5})), CellState::kFree);
+}
+
 TEST_F(ThingsCommand, RefusesAStoreOfAnotherSite) {
   EXPECT_EQ(things({file, "--map", map}).exit_code, 0);
   const std::string other = (folder.path() / "other.yaml").string();

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiments/watch/thing_score.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace deltamap::experiments {
+namespace {
+
+using mapping::things::Outline;
+using mapping::things::Thing;
+
+TEST(ThingScore, AnAssumedSideIsRightWhereASideOfABoxLies) {
+  Thing thing;
+  thing.at = Outline{{5.0, 5.0}, 2.4, 1.6, 0.0, {false, false, true, true}, {true, true, false, false}};
+  const std::array things{thing};
+  const std::array as_told{simulation::Box{{5.0, 5.0}, 2.4, 1.6, 0.0}};
+  const std::array deeper{simulation::Box{{5.0, 5.2}, 2.4, 2.0, 0.0}};  // farther to the side of +width alone
+  EXPECT_EQ(assumed_score_of(things, as_told).sides, 2u);
+  EXPECT_EQ(assumed_score_of(things, as_told).right, 2u);
+  EXPECT_EQ(assumed_score_of(things, as_told).of_seen, 0u);
+  EXPECT_EQ(assumed_score_of(things, deeper).right, 1u);
+  EXPECT_EQ(assumed_score_of(things, {}).right, 0u);
+}
+
+}  // namespace
+}  // namespace deltamap::experiments
