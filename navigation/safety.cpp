@@ -159,29 +159,31 @@ Coasting Safety::coasting(const Motion& at_first, const Motion& then, double bli
 
 /// The worst case is v · (age of the scan + reaction + watchdog + cycle) + v² / 2a along the commanded arc, as if the
 /// robot had its new speed already. While it gathers speed it turns more sharply than that: a second path.
-bool Safety::coasts_clear(const Motion& command, double radius_m, double blind_s) const {
+bool Safety::coasts_clear(const Motion& command, double radius_m, const Ground& ground) const {
   const Motion now = motion_now();
-  const bool moves_on = command.speed_m_per_s > 0.0;
+  const bool must_be_seen = ground.is_looked_at && command.speed_m_per_s > 0.0;
   const auto fits = [&](const Coasting& coasting) {
     const CoastingPath path = coasting_path(coasting);
-    if (moves_on && (path.turned_rad > kMostTurnRad || !is_looked_at(path, scan_->fan, radius_m))) return false;
-    return is_clear(path, scan_->obstacles_in_robot, radius_m);
+    if (must_be_seen && (path.turned_rad > kMostTurnRad || !is_looked_at(path, scan_->fan, radius_m))) return false;
+    return is_clear(path, ground.obstacles_in_robot, radius_m);
   };
   const Motion at_once{std::max(now.speed_m_per_s, command.speed_m_per_s), command.turn_rate_rad_per_s};
-  Coasting gathering = coasting(now, command, blind_s);
+  Coasting gathering = coasting(now, command, ground.blind_s);
   gathering.acceleration_m_per_s2 = kAccelerationMPerS2;
   gathering.turn_acceleration_rad_per_s2 = kTurnAccelerationRadPerS2;
-  return fits(coasting(at_once, command, blind_s)) && fits(gathering);
+  return fits(coasting(at_once, command, ground.blind_s)) && fits(gathering);
 }
 
-/// How long the robot goes on as it does now, counted from what the laser has seen.
-double Safety::unseen_s(Timestamp now) const { return params_.reaction_s + std::max(0.0, seconds(now - scan_->time)); }
+/// How long the robot goes on as it does now, counted from when something was known.
+double Safety::unseen_s(Timestamp seen, Timestamp now) const {
+  return params_.reaction_s + std::max(0.0, seconds(now - seen));
+}
 
 /// Even braking from now on the hull would touch something: only the hardest braking is left.
 bool Safety::can_stop_ahead(Timestamp now) const {
   const Motion motion = motion_now();
   if (motion.speed_m_per_s < kCrawlMPerS) return true;
-  Coasting braking = coasting(motion, {}, unseen_s(now));
+  Coasting braking = coasting(motion, {}, unseen_s(scan_->time, now));
   braking.then_s = 0.0;  // it is told so: that needs no watchdog
   return is_clear(coasting_path(braking), scan_->obstacles_in_robot, params_.robot_radius_m);
 }
@@ -196,22 +198,29 @@ bool Safety::must_brake_hard(Timestamp now) const {
 }
 
 /// The greatest share of a motion, on the same arc, that is safe; 0 where none is.
-double Safety::safe_share(const Motion& wished, double blind_s) const {
+double Safety::safe_share(const Motion& wished, const Ground& ground) const {
   const double keep_m = params_.robot_radius_m + params_.margin_m;
-  if (coasts_clear(wished, keep_m, blind_s)) return 1.0;
+  if (coasts_clear(wished, keep_m, ground)) return 1.0;
   double safe = 0.0;
   double unsafe = 1.0;
   for (int i = 0; i < kHalvings; ++i) {
     const double share = 0.5 * (safe + unsafe);
-    (coasts_clear(scaled(wished, share), keep_m, blind_s) ? safe : unsafe) = share;
+    (coasts_clear(scaled(wished, share), keep_m, ground) ? safe : unsafe) = share;
   }
   return safe;
 }
 
-/// As slow as it has to creep, on the same arc.
-Motion Safety::creeping(const Motion& wished) const {
-  const bool is_slow = wished.speed_m_per_s <= kCreepMPerS;
-  return is_slow || !creeps() ? wished : scaled(wished, kCreepMPerS / wished.speed_m_per_s);
+/// Of borders that nobody has placed anew for a while nobody knows where they are by now.
+double Safety::share_before_zones(const Motion& wished, Timestamp now) const {
+  if (zones_.blocked_in_robot.empty()) return 1.0;
+  if (seconds(now - zones_.time) > kOldestViewS) return 0.0;
+  return safe_share(wished, {zones_.blocked_in_robot, unseen_s(zones_.time, now), false});
+}
+
+/// As slow as it has to creep, and as zones want it, on the same arc.
+Motion Safety::slowed(const Motion& wished) const {
+  const double most = std::min(creeps() ? kCreepMPerS : params_.max_speed_m_per_s, zones_.most_speed_m_per_s);
+  return wished.speed_m_per_s <= most ? wished : scaled(wished, most / wished.speed_m_per_s);
 }
 
 AllowedMotion Safety::allowed(Timestamp now) const {
@@ -219,19 +228,21 @@ AllowedMotion Safety::allowed(Timestamp now) const {
   const StopReason blocked = blocking_state(now);
   if (blocked != StopReason::kNone) return {0.0, 0.0, blocked, brake_hard};
   if (brake_hard) return {0.0, 0.0, StopReason::kObstacle, true};
-  const double blind_s = unseen_s(now);
+  const Ground seen = scanned_ground(now);
+  StopReason in_the_way = StopReason::kObstacle;
   const Motion wished{clamped(command_->command.speed_m_per_s, params_.max_speed_m_per_s),
                       clamped(command_->command.turn_rate_rad_per_s, params_.max_turn_rate_rad_per_s)};
   if (wished.speed_m_per_s > 0.0) {
-    const Motion ahead = creeping(wished);
-    const Motion motion = scaled(ahead, safe_share(ahead, blind_s));
+    const Motion ahead = slowed(wished);
+    const Motion free = scaled(ahead, safe_share(ahead, seen));
+    const Motion motion = scaled(free, share_before_zones(free, now));
     if (motion.speed_m_per_s >= kCrawlMPerS) return {motion.speed_m_per_s, motion.turn_rate_rad_per_s};
+    if (free.speed_m_per_s >= kCrawlMPerS) in_the_way = StopReason::kBlockedZone;
   }
   const bool may_turn = nearest_m(scan_->obstacles_in_robot) > params_.robot_radius_m &&
-                        coasts_clear({0.0, wished.turn_rate_rad_per_s}, params_.robot_radius_m, blind_s);
+                        coasts_clear({0.0, wished.turn_rate_rad_per_s}, params_.robot_radius_m, seen);
   const bool stands_as_wished = wished.speed_m_per_s == 0.0 && may_turn;
-  return {0.0, may_turn ? wished.turn_rate_rad_per_s : 0.0,
-          stands_as_wished ? StopReason::kNone : StopReason::kObstacle};
+  return {0.0, may_turn ? wished.turn_rate_rad_per_s : 0.0, stands_as_wished ? StopReason::kNone : in_the_way};
 }
 
 }  // namespace deltamap::navigation

@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/angle.hpp"
@@ -19,6 +20,7 @@
 #include "navigation/lost_ends.hpp"
 #include "navigation/obedience.hpp"
 #include "navigation/stop_reason.hpp"
+#include "navigation/zoned_driving.hpp"
 
 namespace deltamap::navigation {
 
@@ -76,6 +78,8 @@ class Safety {
   /// A command's life counts from its arrival here: at 38400 baud a scan of 0.5° is 0.22 s old when it can be decided
   /// on. `held_by`: why the pilot itself must not drive now.
   void command(const DriveCommand& command, Timestamp now, StopReason held_by = StopReason::kNone);
+  /// Whoever drives: of the newest pose that holds; of one that does not, nothing.
+  void heed(ZonesAround zones) { zones_ = std::move(zones); }
   /// Forgets the command: the mode went to off.
   void release() { command_.reset(); }
   /// What was sent to the robot just now: it is held to that. Nothing: nobody talks to it.
@@ -143,20 +147,31 @@ class Safety {
   [[nodiscard]] StopReason unfit_robot(Timestamp now) const;
   [[nodiscard]] StopReason unfit_laser(Timestamp now) const;
   [[nodiscard]] std::optional<Pose2> odom_at(const Scan& scan);
-  [[nodiscard]] Motion creeping(const Motion& wished) const;
+  [[nodiscard]] Motion slowed(const Motion& wished) const;
   [[nodiscard]] Motion motion_now() const;
   [[nodiscard]] Coasting coasting(const Motion& at_first, const Motion& then, double blind_s) const;
-  [[nodiscard]] bool coasts_clear(const Motion& command, double radius_m, double blind_s) const;
-  [[nodiscard]] double unseen_s(Timestamp now) const;
+  /// What it is to stay clear of, and how long it goes on as it does now from when that was so.
+  struct Ground {
+    std::span<const Point2> obstacles_in_robot;
+    double blind_s = 0.0;
+    bool is_looked_at = true;  ///< by the laser, which must see the way, too
+  };
+  [[nodiscard]] bool coasts_clear(const Motion& command, double radius_m, const Ground& ground) const;
+  [[nodiscard]] double unseen_s(Timestamp seen, Timestamp now) const;
+  [[nodiscard]] Ground scanned_ground(Timestamp now) const {
+    return {scan_->obstacles_in_robot, unseen_s(scan_->time, now)};
+  }
   [[nodiscard]] bool can_stop_ahead(Timestamp now) const;
   [[nodiscard]] bool must_brake_hard(Timestamp now) const;
-  [[nodiscard]] double safe_share(const Motion& wished, double blind_s) const;
+  [[nodiscard]] double safe_share(const Motion& wished, const Ground& ground) const;
+  [[nodiscard]] double share_before_zones(const Motion& wished, Timestamp now) const;
 
   SafetyParams params_;
   StoppingBehaviour stopping_;
   std::optional<SeenScan> scan_;
   std::optional<Odometry> odometry_;
   std::optional<HeldCommand> command_;
+  ZonesAround zones_;
   LaserWatch laser_;
   LostEnds lost_ends_;
   std::uint32_t lost_ends_epoch_ = 0;  // of the odometry in whose frame they are

@@ -44,6 +44,7 @@ constexpr auto kNames = std::to_array<NamedReason>({
     {StopReason::kPoseUnsure, "pose unsure"},
     {StopReason::kPoseUnfit, "scans do not fit the pose"},
     {StopReason::kReverse, "reverse refused"},
+    {StopReason::kBlockedZone, "blocked zone"},
     {StopReason::kObstacle, "obstacle"},
 });
 

@@ -39,6 +39,7 @@ enum class StopReason : std::uint8_t {
   kPoseUnsure,       ///< the deviation of the position exceeds a metre
   kPoseUnfit,        ///< the scans have not fitted the pose for two seconds
   kReverse,          ///< backwards is where the laser does not look
+  kBlockedZone,      ///< the border of a blocked zone is too near
   kObstacle          ///< what the laser sees, or could not see, is too near
 };
 

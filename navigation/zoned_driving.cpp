@@ -31,6 +31,11 @@ std::vector<Point2> blocked_borders(const Zones& zones, const Pose2& map_from_ro
   return points;
 }
 
+ZonesAround zones_around(const Zones& zones, const Pose2& map_from_robot, Timestamp time,
+                         const ZonedDrivingParams& params) {
+  return {time, blocked_borders(zones, map_from_robot, params), speed_limit_m_per_s(zones, map_from_robot, params)};
+}
+
 double speed_limit_m_per_s(const Zones& zones, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
   double limit = std::numeric_limits<double>::infinity();
   const Point2 ahead = map_from_robot * Point2{params.brakes_within_m, 0.0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What zones ask of the pilot: blocked ones are obstacles that no laser sees, and in others it drives slowly. Both need
-// a pose that holds.
+// What zones ask of whoever drives, pilot or hand: blocked ones are obstacles that no laser sees, and in others the
+// robot drives slowly. Both need a pose that holds.
 #pragma once
 
 #include <limits>
@@ -16,6 +16,16 @@ struct ZonedDrivingParams {
   double step_m = 0.1;           ///< between points of a border; > 0, smaller than the robot
   double brakes_within_m = 0.5;  ///< so far before it a limit holds already; >= 0
 };
+
+/// What they ask around one pose. Nothing of a pose that does not hold.
+struct ZonesAround {
+  Timestamp time{};                        ///< of the pose
+  std::vector<Point2> blocked_in_robot{};  ///< in its frame: obstacles that no laser sees
+  double most_speed_m_per_s = std::numeric_limits<double>::infinity();
+};
+
+[[nodiscard]] ZonesAround zones_around(const Zones& zones, const Pose2& map_from_robot, Timestamp time,
+                                       const ZonedDrivingParams& params = {});
 
 /// Points on the borders of blocked zones in the robot's frame. A robot that stands in one may leave it: that one has
 /// none.

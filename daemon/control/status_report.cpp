@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/control/status_report.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/geometry/angle.hpp"
@@ -143,6 +144,8 @@ std::string status_json_line(const Telemetry& t, const Settings& settings, doubl
   json["forbidden_by"] = navigation::name_of(forbids);
   json["told"] = {{"speed_m_per_s", t.told_speed_m_per_s.value()},
                   {"turn_rate_rad_per_s", t.told_turn_rate_rad_per_s.value()}};
+  const double zone_limit = t.zone_limit_m_per_s.value();
+  json["zone_limit_m_per_s"] = zone_limit > 0.0 && std::isfinite(zone_limit) ? Json(zone_limit) : Json(nullptr);
   const auto battery_v = told_battery_v(t);
   json["battery_v"] = battery_v ? Json(*battery_v) : Json(nullptr);
   json["latency_ms"] = t.localized.value() > 0 ? Json(t.latency_s.value() * 1e3) : Json(nullptr);

@@ -114,6 +114,8 @@ void DriveDesk::take(const PilotWord& word, Timestamp now) {
   pose_stop_ = word.pose;
   safety_.set_wheels_spin(word.wheels_spin);
   safety_.set_misses_walls(word.misses_walls);
+  safety_.heed(word.zones);
+  wiring_.telemetry.zone_limit_m_per_s.set(word.zones.most_speed_m_per_s);
   safety_.expect_no_range(word.expects_no_range ? std::optional{word.command.time} : std::nullopt);
   if (in_hand_of_ != 0 || !wiring_.session.permission().holds()) return;
   safety_.command(word.command, now, word.held_by);

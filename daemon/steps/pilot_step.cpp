@@ -6,7 +6,6 @@
 
 #include "navigation/mapped_walls.hpp"
 #include "navigation/remembered_obstacles.hpp"
-#include "navigation/zoned_driving.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -40,23 +39,17 @@ PilotWord PilotStep::observe(const TrackedScan& tracked, const Seen& seen) {
   word.misses_walls = dead_beams_.hide_a_sector();
   word.held_by = drives_without_pose_ ? StopReason::kNone : word.pose;
   word.expects_no_range = word.pose == StopReason::kNone && navigation::expects_no_range(tracked);
-  if (wander_ && word.held_by == StopReason::kNone) {
-    const bool has_pose = word.pose == StopReason::kNone;
-    word.command = wander_->step(tracked, obstacles_beside(tracked, seen, has_pose));
-    if (has_pose) {
-      const double limit = navigation::speed_limit_m_per_s(zones_, tracked.estimate.map_from_robot);
-      word.command.speed_m_per_s = std::min(word.command.speed_m_per_s, limit);
-    }
-  }
+  if (word.pose == StopReason::kNone)
+    word.zones = navigation::zones_around(zones_, tracked.estimate.map_from_robot, tracked.scan.time);
+  if (wander_ && word.held_by == StopReason::kNone)
+    word.command = wander_->step(tracked, obstacles_beside(tracked, seen, word.zones));
   return word;
 }
 
-std::vector<Point2> PilotStep::obstacles_beside(const TrackedScan& tracked, const Seen& seen, bool has_pose) const {
+std::vector<Point2> PilotStep::obstacles_beside(const TrackedScan& tracked, const Seen& seen,
+                                                const navigation::ZonesAround& zones) const {
   std::vector<Point2> obstacles = navigation::walls_behind_lost_beams(tracked, kMappedWithinM);
-  if (has_pose) {
-    const auto borders = navigation::blocked_borders(zones_, tracked.estimate.map_from_robot);
-    obstacles.insert(obstacles.end(), borders.begin(), borders.end());
-  }
+  obstacles.insert(obstacles.end(), zones.blocked_in_robot.begin(), zones.blocked_in_robot.end());
   if (seen.transients == nullptr) return obstacles;
   const auto remembered =
       navigation::remembered_obstacles(*seen.transients, tracked, {.hull_m = wander_->params().robot_radius_m});

@@ -17,6 +17,7 @@
 #include "navigation/pose_watch.hpp"
 #include "navigation/stop_reason.hpp"
 #include "navigation/wander.hpp"
+#include "navigation/zoned_driving.hpp"
 
 namespace deltamap::daemon {
 
@@ -26,7 +27,8 @@ struct PilotWord {
   navigation::StopReason pose = navigation::StopReason::kNone;     ///< why nobody should drive by this pose
   bool wheels_spin = false;                                        ///< they turn, and the scans stand
   bool misses_walls = false;                                       ///< a part of the laser never sees what the map has
-  bool expects_no_range = false;  ///< the map has nothing within reach of the beams without a range
+  bool expects_no_range = false;    ///< the map has nothing within reach of the beams without a range
+  navigation::ZonesAround zones{};  ///< that whoever drives has to heed; nothing while the pose does not hold
 };
 
 class PilotStep {
@@ -47,7 +49,8 @@ class PilotStep {
 
  private:
   /// What stands there although the scan does not show it.
-  [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked, const Seen& seen, bool has_pose) const;
+  [[nodiscard]] std::vector<Point2> obstacles_beside(const TrackedScan& tracked, const Seen& seen,
+                                                     const navigation::ZonesAround& zones) const;
 
   bool drives_without_pose_;
   Zones zones_;

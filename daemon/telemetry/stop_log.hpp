@@ -15,7 +15,8 @@ class StopLog {
   /// The line that is due now that this is the reason; a warning where driving ends.
   [[nodiscard]] LogLine line(navigation::StopReason reason) {
     using navigation::StopReason;
-    const bool drives = reason == StopReason::kNone || reason == StopReason::kObstacle;
+    const bool drives =
+        reason == StopReason::kNone || reason == StopReason::kObstacle || reason == StopReason::kBlockedZone;
     return due(told_, reason, drives, {.ends = "driving stops: ", .goes_on = "driving goes on", .is_warning = true});
   }
 

@@ -77,6 +77,7 @@ struct Telemetry {
   Gauge<bool> by_hand;                  ///< a person's are, and the pilot's are not
   Notice never_driven;                  ///< why this robot is not driven, whatever a person says
   Gauge<std::uint8_t> drive_switch;     ///< drivers::pioneer::DriveSwitch: what a person said last
+  Gauge<double> zone_limit_m_per_s;  ///< of the zones around the robot; 0 or infinite: none, or nobody knows the pose
   Gauge<double> told_speed_m_per_s, told_turn_rate_rad_per_s;  ///< what the robot was told last
   Gauge<double> battery_v;
   Gauge<std::uint8_t> stop_reason;       ///< navigation::StopReason

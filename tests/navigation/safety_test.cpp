@@ -179,6 +179,49 @@ TEST(Safety, SlowsDownSoFarThatTheStopDistanceIsFree) {
   }
 }
 
+/// A border 1 m wide across the way.
+ZonesAround border_at(double ahead_m, Timestamp time = kNow) {
+  ZonesAround zones{.time = time};
+  for (int i = -5; i <= 5; ++i) zones.blocked_in_robot.emplace_back(ahead_m, 0.1 * i);
+  return zones;
+}
+
+TEST(Safety, ComesToRestBeforeABlockedZoneWhoeverDrivesAndLetsTheRobotTurnAway) {
+  Safety safety = at_ease(0.7, 0.0);
+  safety.heed(border_at(1.5));
+  const double v = safety.allowed(kNow).speed_m_per_s;
+  EXPECT_LT(v, 0.7);
+  EXPECT_GT(v, 0.2);
+  EXPECT_LT(blind_travel_m(v), 1.5 - 0.34);
+  safety.heed(border_at(1.5, after(-0.5)));
+  EXPECT_LT(safety.allowed(kNow).speed_m_per_s, v) << "it is nearer by now";
+  safety.heed(border_at(2.9, after(-60.0)));
+  expect_stop(safety.allowed(kNow), StopReason::kBlockedZone);
+  safety.heed(border_at(0.33));
+  safety.command({kNow, 0.5, 0.3}, kNow);
+  expect_stop(safety.allowed(kNow), StopReason::kBlockedZone);
+  EXPECT_EQ(safety.allowed(kNow).turn_rate_rad_per_s, 0.3);
+  EXPECT_FALSE(safety.allowed(kNow).brake_hard) << "a line on the map is no wall";
+  safety.heed({});
+  EXPECT_EQ(safety.allowed(kNow).speed_m_per_s, 0.5) << "of a pose that does not hold";
+}
+
+TEST(Safety, AWallBeforeABlockedZoneIsAnObstacle) {
+  Safety safety = at_ease(0.5, 0.0);
+  safety.observe(hall(0.36F));
+  safety.heed(border_at(0.5));
+  expect_stop(safety.allowed(kNow), StopReason::kObstacle);
+}
+
+TEST(Safety, DrivesNoFasterThanASlowZoneAllowsOnTheArcThatWasAskedFor) {
+  Safety safety = at_ease(0.5, 0.2);
+  safety.heed({.time = kNow, .most_speed_m_per_s = 0.25});
+  EXPECT_NEAR(safety.allowed(kNow).speed_m_per_s, 0.25, 1e-9);
+  EXPECT_NEAR(safety.allowed(kNow).turn_rate_rad_per_s, 0.1, 1e-9);
+  safety.command({kNow, 0.2, 0.2}, kNow);
+  EXPECT_EQ(safety.allowed(kNow).turn_rate_rad_per_s, 0.2);
+}
+
 TEST(Safety, KeepsAGreaterDistanceTheOlderTheScan) {
   Safety safety = with_watchdog({.command_life_s = 10.0, .nominal_scan_period_s = 10.0, .odometry_life_s = 10.0});
   safety.observe(hall(1.0F));

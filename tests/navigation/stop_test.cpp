@@ -176,6 +176,11 @@ std::vector<Row> table() {
        [](Drive& d) { d.odometry.speed_m_per_s = 0.0; }, true, true},
       {StopReason::kReverse, [](Drive& d) { d.speed_m_per_s = -0.1; }, [](Drive& d) { d.speed_m_per_s = 0.3; }, false,
        false},
+      {StopReason::kBlockedZone,
+       [](Drive& d) {
+         d.safety.heed({.time = d.now, .blocked_in_robot = {{0.3, 0.0}}});
+       },
+       [](Drive& d) { d.safety.heed({}); }, false, false},
       {StopReason::kObstacle, [](Drive& d) { d.scan.beams[90].range_m = 0.3F; },
        [](Drive& d) { d.scan.beams[90].range_m = 6.0F; }, false, false},
   };
@@ -204,12 +209,13 @@ TEST(StopReasons, EachStopsTheRobotAndEndsAsItsRowSays) {
   }
 }
 
-TEST(StopReasons, AllWithoutTheObstacleForbidTurningAsWell) {
+TEST(StopReasons, AllWithoutWhatLiesAheadForbidTurningAsWell) {
   for (const Row& row : table()) {
     Drive drive;
     row.begins(drive);
     const AllowedMotion motion = drive.run_for(kLongEnoughS);
-    EXPECT_EQ(motion.turn_rate_rad_per_s, row.reason == StopReason::kObstacle ? 0.1 : 0.0) << name_of(row.reason);
+    const bool is_ahead = row.reason == StopReason::kObstacle || row.reason == StopReason::kBlockedZone;
+    EXPECT_EQ(motion.turn_rate_rad_per_s, is_ahead ? 0.1 : 0.0) << name_of(row.reason);
   }
 }
 

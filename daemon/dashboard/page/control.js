@@ -2,7 +2,7 @@
 // The buttons that command. They are there where the daemon takes commands from the page; STOP is never covered.
 
 import { command, TaskRow } from "./commands.js";
-import { HandDrive } from "./drive.js";
+import { HandDrive, hindrance_of } from "./drive.js";
 import { Relocalize } from "./relocalize.js";
 import { ask_token, is_locked } from "./token.js";
 
@@ -14,6 +14,7 @@ const by_id = (id) => document.getElementById(id);
 
 export class Control {
   constructor(view, model) {
+    this.model = model;
     this.row = new TaskRow(by_id("task"));
     this.relocalize = new Relocalize(view, model, this.row, () => this.mark());
     this.hand = new HandDrive(by_id("pad"), (why) => {
@@ -52,6 +53,8 @@ export class Control {
   }
 
   show(status) {
+    const has_zones = this.model.zones.some(({ zoneType }) => zoneType === "BLOCKED" || zoneType === "SPEED_LIMIT");
+    this.hand.tell(hindrance_of(status, has_zones));
     this.mapping = status.mapping;
     by_id("pause").textContent = status.mapping === "paused" ? "Resume mapping" : "Pause mapping";
     by_id("pause").disabled = status.mapping !== "paused" && status.mapping !== "on";

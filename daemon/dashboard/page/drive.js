@@ -6,7 +6,18 @@ const SPEED_M_PER_S = 0.25, TURN_RAD_PER_S = 0.7;
 const STICK_PX = 42;     // drag for full speed
 const DEAD_SHARE = 0.12; // of it that is no wish
 const SILENCE_MS = 1000; // of the daemon
+const USE = "drag or hold; keys ← ↑ →; Esc ends";
 const KEYS = { ArrowUp: "ahead", KeyW: "ahead", ArrowLeft: "left", KeyA: "left", ArrowRight: "right", KeyD: "right" }; // by place
+
+const IS_AT_REST = ["none", "no command", "command expired"];
+
+/// Why a hand does not get what it wants; empty: nothing is in its way. `has_zones`: some that whoever drives heeds.
+export function hindrance_of({ stopped_by, zone_limit_m_per_s, may_drive_by_pose, forbidden_by }, has_zones) {
+  if (stopped_by === "blocked zone") return "a blocked zone begins here: turn away";
+  if (!IS_AT_REST.includes(stopped_by)) return `it stands: ${stopped_by}`;
+  if (has_zones && !may_drive_by_pose) return `zones are not heeded: ${forbidden_by}`;
+  return zone_limit_m_per_s === null ? "" : `slow zone: at most ${zone_limit_m_per_s} m/s`;
+}
 
 export class HandDrive {
   /// `on_end(why)` when it is over, by whom ever; `pad` holds a button for each of ahead, left, right (data-go) and the stick, which is dragged.
@@ -41,6 +52,7 @@ export class HandDrive {
   hear(message) {
     if (message.type === "taken") {
       this.pad.hidden = false;
+      this.tell("");
       this.pad.querySelector("[data-go]").focus();
     } else if (message.type === "beat") {
       this.beat = message.number;
@@ -55,6 +67,9 @@ export class HandDrive {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.end("the daemon is not heard"), SILENCE_MS);
   }
+
+  /// What keeps the robot from what the hand wants, as of a status.
+  tell(words) { if (this.drives) this.pad.querySelector("small").textContent = words || USE; }
 
   /// Nothing is piled up: what cannot leave now would come too late.
   speak() {

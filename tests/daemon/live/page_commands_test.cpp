@@ -254,6 +254,32 @@ TEST_F(PageCommandsTest, ByHandItMovesAndStandsAtReleaseAndAgainstNobodysWill) {
   });
 }
 
+TEST_F(PageCommandsTest, ByHandItComesToRestBeforeABlockedZoneAndIsSlowInASlowOne) {
+  ask_for_token();
+  settings_.zones.file =
+      folder_
+          .write("zones.yaml",
+                 "zones:\n  - {zoneId: slow, zoneType: SPEED_LIMIT, maximumSpeed: 0.15, vertices: [[0, 0], [2.6, 0], "
+                 "[2.6, 4], [0, 4]]}\n"
+                 "  - {zoneId: dock, zoneType: BLOCKED, vertices: [[2, 0.5], [3, 0.5], [3, 3.5], [2, 3.5]]}\n")
+          .string();
+  run([&](test::SimulatedPorts& ports) {
+    Hands hands = this->hands();
+    drive_until_it_moves(hands, ports);
+    EXPECT_EQ(status()["zone_limit_m_per_s"], 0.15);
+    Json now = status();
+    for (int i = 0; i < 600 && now["stopped_by"] != "blocked zone"; ++i) {
+      hands.hold(0.4, 1);
+      EXPECT_LE(newest_speed(ports).mm_per_s, 150);
+      now = status();
+    }
+    EXPECT_EQ(now["stopped_by"], "blocked zone");
+    const double before_it_m = 2.0 - now["pose"]["x_m"].get<double>();
+    EXPECT_GT(before_it_m, settings_.navigation.safety.robot_radius_m) << "its hull is not in it";
+    EXPECT_LT(before_it_m, 0.6);
+  });
+}
+
 TEST_F(PageCommandsTest, AConnectionThatIsLostOrSilentMakesItStand) {
   ask_for_token();
   run([&](test::SimulatedPorts& ports) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -163,13 +164,16 @@ PilotWord word_before(ZoneKind kind, bool has_pose = true) {
   return word;
 }
 
-TEST(PilotStep, TurnsBeforeABlockedZoneAndSlowsDownBeforeASlowOne) {
+TEST(PilotStep, TurnsBeforeABlockedZoneAndTellsWhoeverDrivesWhatZonesAsk) {
   EXPECT_GT(word_before(ZoneKind::kFrozen).command.speed_m_per_s, 0.2);
   const PilotWord blocked = word_before(ZoneKind::kBlocked);
   EXPECT_EQ(blocked.command.speed_m_per_s, 0.0);
   EXPECT_NE(blocked.command.turn_rate_rad_per_s, 0.0);
-  EXPECT_LE(word_before(ZoneKind::kSpeedLimit).command.speed_m_per_s, 0.1);
-  EXPECT_GT(word_before(ZoneKind::kSpeedLimit, false).command.speed_m_per_s, 0.2) << "nobody knows where that is";
+  EXPECT_FALSE(blocked.zones.blocked_in_robot.empty()) << "whoever drives: Safety heeds it";
+  EXPECT_EQ(word_before(ZoneKind::kSpeedLimit).zones.most_speed_m_per_s, 0.1);
+  const PilotWord lost = word_before(ZoneKind::kSpeedLimit, false);
+  EXPECT_TRUE(std::isinf(lost.zones.most_speed_m_per_s)) << "nobody knows where that is";
+  EXPECT_TRUE(word_before(ZoneKind::kBlocked, false).zones.blocked_in_robot.empty());
 }
 
 TEST(PilotStep, OfARunInWhichNobodyDrivesNeverCommands) {
