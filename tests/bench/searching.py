@@ -100,8 +100,8 @@ def measure(seed, quick):
         "| best and worst of these searches | | %.1f to %.1f |" % (min(of_found), max(of_found)), "",
         "What the searches said of what they had found: %s. Of `%s`, which does nothing in this drive, %d searches from the settings as delivered said: %s." % (
             told(verdicts), next(iter(IDLE)), len(idle), told(idle)), "",
-        "Asked for: at least 8 of 10 searches halve the error, their median within a quarter of the best of the random ones, and no difference told where there is none: %s." % (
-            "met" if is_met else "**missed**")]
+        "Asked for: at least 8 in 10 of the searches (here %d) halve the error, their median within a quarter of the best of the random ones, and no difference told where there is none: %s." % (
+            searches, "met" if is_met else "**missed**")]
     return lines, is_met
 
 
