@@ -91,7 +91,8 @@ TEST_F(ThingsCommand, TellsWhatStandsWhere) {
 }
 
 TEST_F(ThingsCommand, WhatIsAssumedIsToldAndExportedAsSuch) {
-  site.number = 3;  // the undo
+  site.box({4.0, 4.0, 6.4, 5.6}).begin_with_what_is_drawn();  // the undo was revision 3
+  site.number = 3;
   site.south({8.0, 4.0, 10.0, 6.0}).west({8.0, 4.0, 10.0, 6.0});
   append("evidence");
   const auto assumed_of = [](const ToolRun& run) {
@@ -103,8 +104,10 @@ TEST_F(ThingsCommand, WhatIsAssumedIsToldAndExportedAsSuch) {
   const std::string plain = (folder.path() / "plain.yaml").string();
   const std::string marked = (folder.path() / "marked.yaml").string();
   const std::string newest = std::to_string(site.number);
-  ASSERT_EQ(test::run_deltamap({"map", "history", file, "export", newest, plain}).exit_code, 0);
-  ASSERT_EQ(test::run_deltamap({"map", "history", file, "export", newest, marked, "--assumed"}).exit_code, 0);
+  const ToolRun without = test::run_deltamap({"map", "history", file, "export", newest, plain});
+  ASSERT_EQ(without.exit_code, 0) << without.errors;
+  const ToolRun with = test::run_deltamap({"map", "history", file, "export", newest, marked, "--assumed"});
+  ASSERT_EQ(with.exit_code, 0) << with.errors;
   const Cell inside = site.map.geometry().cell_at({9.5, 5.5});
   EXPECT_EQ(read_grid(plain).at(inside), CellState::kFree);
   EXPECT_EQ(read_grid(marked).at(inside), CellState::kUnknown) << "marked, and never free";
