@@ -62,8 +62,8 @@ struct Pipeline::State {
   Options options;
   Telemetry telemetry;
   ThingsBoard things;      // map → control, page
-  BaysBoard bays;          // delta → control, page
-  NewestBoard<Site> site;  // whoever reloads → page
+  BaysBoard bays;          // delta → control, page, map (for the next run)
+  NewestBoard<Site> site;  // whoever reloads or draws → page
 
   Channel<SensorMessage> sensors{128};    // io → localization: the newest message, journaled
   Channel<DeltaWork> tracked_scans{128};  // localization → delta: the newest scan is not looked at for changes,
@@ -137,7 +137,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
       io{settings, io_wiring()},
       localization{settings, options.start, options.first_map, localization_wiring()},
       delta{settings, options.start, delta_wiring()},
-      map{settings, options.start, options.out, std::move(options.store), map_wiring()} {
+      map{settings, options.start, options.first_map, options.out, std::move(options.store), map_wiring()} {
   site.set(site_at_start);
   telemetry.log_level.set(static_cast<std::uint8_t>(LogLevel::kInfo));
   telemetry.newest_revision.set(options.start.revision);
@@ -249,7 +249,9 @@ DeltaStage::Wiring Pipeline::State::delta_wiring() {
           .show = [this](const auto& newest) { return page && page->board().show(newest); },
           .shows_scans = [this] { return page && page->board().is_watched(); },
           .show_scans = [this](mapping::StoredScans stored) { page->board().show(std::move(stored)); },
-          .bays = bays};
+          .bays = bays,
+          .remembered = remembered_bays(memory_places(settings.map.store).bays_seen, options.first_map,
+                                        drivers::port::port_clock_now())};
 }
 
 MapStage::Wiring Pipeline::State::map_wiring() {
@@ -264,7 +266,8 @@ MapStage::Wiring Pipeline::State::map_wiring() {
                 if (page) page->board().show(revision, note);
               },
           .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); },
-          .things = things};
+          .things = things,
+          .bays = bays};
 }
 
 // --- the threads ---

@@ -71,6 +71,7 @@ std::string json_of(const BayList& list, const ThingList& things, Timestamp now)
     BayJson bay;
     add_bay(bay, list.bays[i]);
     add_status(bay, list.statuses[i], now);
+    if (i < list.is_remembered.size() && list.is_remembered[i]) bay["remembered"] = true;
     bay["things"] = things_in(list.bays[i], things.things);
     bay["polygon_m"] = BayJson::array();
     for (const Point2& corner : list.bays[i].polygon) bay["polygon_m"].push_back({corner.x(), corner.y()});

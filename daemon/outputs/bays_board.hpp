@@ -12,6 +12,7 @@ namespace deltamap::daemon {
 struct BayList {
   std::vector<mapping::bays::Bay> bays;
   std::vector<mapping::bays::BayStatus> statuses;  ///< of each
+  std::vector<bool> is_remembered{};  ///< of each: by an earlier run, and this one has never known it; empty: none is
 };
 
 using BaysBoard = NewestBoard<BayList>;

@@ -138,7 +138,8 @@ void Journal::read(std::string_view note) {
     Decision command{.kind = Kind::kSiteSet, .scan = set->scan};
     command.scan_time = set->scan_time;
     command.site = set->site;
-    return add_command(std::move(command));
+    if (!is_repeated(command)) add_command(std::move(command));
+    return;
   }
   if (const auto decision = decision_of_note(note)) take(*decision);
 }
@@ -172,13 +173,22 @@ void Journal::take(const Decision& decision) {
     case Kind::kPaused:
     case Kind::kResumed:
     case Kind::kRelocalized:
-      // A recording repeats behind a gap which command is in force: that one is no new command.
-      if (std::find(commands_.begin(), commands_.end(), decision) == commands_.end()) add_command(decision);
+      if (!is_repeated(decision)) add_command(decision);
       break;
     case Kind::kMapSet:
     case Kind::kSiteSet:
       break;
   }
+}
+
+/// A recording repeats behind a gap which command is in force: that one is no new command.
+bool Journal::is_repeated(const Decision& command) const {
+  return std::any_of(commands_.begin(), commands_.end(), [&](const Decision& known) {
+    Decision other = known;
+    const bool is_one_site = command.site && known.site && *command.site == *known.site;
+    if (is_one_site) other.site = command.site;
+    return other == command;
+  });
 }
 
 /// Inserts a command by its scan: the map thread notes a command later than the localization thread notes its own of

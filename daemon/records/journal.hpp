@@ -103,6 +103,7 @@ class Journal {
 
  private:
   void take(const Decision& decision);
+  [[nodiscard]] bool is_repeated(const Decision& command) const;
   void add_command(Decision command);
 
   std::optional<RunIdentity> run_;

@@ -108,6 +108,7 @@ void LiveRecording::go_on() {
   const drivers::port::FirstBauds bauds = so_far_.bauds();
   writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds.robot), PortId::kRobot));
   writer_->write(note_at(last_stamp_, drivers::port::baud_note(bauds.laser), PortId::kLaser));
+  for (const std::string& note : so_far_.site_notes()) writer_->write(note_at(last_stamp_, note));
   if (!so_far_.pause_note().empty()) writer_->write(note_at(last_stamp_, so_far_.pause_note()));
   writer_->flush();
   has_gap_ = false;

@@ -52,6 +52,7 @@ void RunSoFar::read_note(const ByteRecord& record) {
     record.port == PortId::kRobot ? packets_.set_baud(*baud) : telegrams_.set_baud(*baud);
   }
   if (record.note == session_note(record.port)) said_[port].clear();
+  if (const auto set = site_.read(record.note)) site_notes_ = notes_of(*set);
   const auto decision = decision_of_note(record.note);
   const bool is_pause =
       decision && (decision->kind == Decision::Kind::kPaused || decision->kind == Decision::Kind::kResumed);
@@ -93,6 +94,7 @@ std::vector<ByteRecord> RunSoFar::beginning(const std::vector<std::string>& note
     }
   }
   records.push_back(note_of(kPartNote, stamp));
+  for (const std::string& note : site_notes_) records.push_back(note_of(note, stamp));
   if (!pause_note_.empty()) records.push_back(note_of(pause_note_, stamp));
   return records;
 }

@@ -5,11 +5,12 @@ namespace deltamap::daemon {
 
 MemoryPlaces memory_places(const std::filesystem::path& store) {
   if (store.empty()) return {};
-  MemoryPlaces places{store, store, store, store, store};
+  MemoryPlaces places{store, store, store, store, store, store};
   places.pose.replace_extension(".pose.json");
   places.stability.replace_extension(".stability");
   places.things.replace_extension(".things.jsonl");
   places.bays.replace_extension(".bays.jsonl");
+  places.bays_seen.replace_extension(".bays-seen.json");
   places.saved_map.replace_extension(".saved.yaml");
   return places;
 }

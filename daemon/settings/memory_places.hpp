@@ -12,6 +12,7 @@ struct MemoryPlaces {
   std::filesystem::path stability;  ///< NAME.stability
   std::filesystem::path things;     ///< NAME.things.jsonl
   std::filesystem::path bays;       ///< NAME.bays.jsonl
+  std::filesystem::path bays_seen;  ///< NAME.bays-seen.json
   std::filesystem::path saved_map;  ///< NAME.saved.yaml with its PGM: what `ctl save` writes
 };
 [[nodiscard]] MemoryPlaces memory_places(const std::filesystem::path& store);

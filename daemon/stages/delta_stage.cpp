@@ -24,13 +24,13 @@ DeltaStage::DeltaStage(const Settings& settings, const StartMap& start, Wiring w
       store_scan_{settings.mapping.store_scan, settings.seed, !start.provisional.empty()},
       bays_{start} {
   if (start.site) store_scan_.set_zones(start.site->zones);
-  wiring_.bays.set(bays_.list());
+  show_bays();
 }
 
 void DeltaStage::take(const SharedSite& site) {
   store_scan_.set_zones(site->zones);
   bays_.set_bays(site->bays);
-  wiring_.bays.set(bays_.list());
+  show_bays();
   hand_over(site);
 }
 
@@ -78,7 +78,7 @@ void DeltaStage::show_bays(std::vector<mapping::bays::BayEvent> events, Timestam
   for (mapping::bays::BayEvent& event : events) hand_over(std::move(event));
   if (events.empty() && seconds(now - bays_shown_) < kBaysPeriod_s) return;
   bays_shown_ = now;
-  wiring_.bays.set(bays_.list());
+  show_bays();
 }
 
 /// Shows the stored scans, with those of sets that still wait for the map thread.

@@ -10,6 +10,7 @@
 
 #include "core/channel.hpp"
 #include "core/messages.hpp"
+#include "daemon/maps/kept_bays.hpp"
 #include "daemon/records/map_order.hpp"
 #include "daemon/records/recorder.hpp"
 #include "daemon/settings/settings.hpp"
@@ -38,6 +39,7 @@ class DeltaStage {
     std::function<bool()> shows_scans;                     ///< for the live page: somebody looks at the next
     std::function<void(mapping::StoredScans)> show_scans;  ///< never waits
     BaysBoard& bays;                                       ///< for control and live page
+    RememberedBays remembered{};                           ///< shown until this run has looked itself
   };
   DeltaStage(const Settings& settings, const StartMap& start, Wiring wiring);
 
@@ -52,6 +54,7 @@ class DeltaStage {
  private:
   void look_for_changes(const TrackedScan& tracked);
   void show_bays(std::vector<mapping::bays::BayEvent> events, Timestamp now);
+  void show_bays() { wiring_.bays.set(wiring_.remembered.beside(*bays_.list())); }
   void take(const SharedSite& site);
   void hand_over(MapWork work);
   void offer_waiting();

@@ -55,8 +55,8 @@ StoreToKeep with_retention(StoreToKeep store, const mapping::store::Retention& r
 
 }  // namespace
 
-MapStage::MapStage(const Settings& settings, const StartMap& start, const std::optional<std::filesystem::path>& out,
-                   StoreToKeep store, Wiring wiring)
+MapStage::MapStage(const Settings& settings, const StartMap& start, std::uint64_t first_map,
+                   const std::optional<std::filesystem::path>& out, StoreToKeep store, Wiring wiring)
     : wiring_{std::move(wiring)},
       step_{settings, start},
       things_{{.store = store.store ? &*store.store : nullptr,
@@ -66,7 +66,10 @@ MapStage::MapStage(const Settings& settings, const StartMap& start, const std::o
               wiring_.telemetry.outputs,
               wiring_.warn,
               port_clock_now()},
-      bays_{{.out = out, .kept = settings.bays.file.empty() ? "" : memory_places(settings.map.store).bays},
+      bays_{{.out = out,
+             .kept = settings.bays.file.empty() ? "" : memory_places(settings.map.store).bays,
+             .seen = settings.bays.file.empty() ? "" : memory_places(settings.map.store).bays_seen,
+             .first_map = first_map},
             wiring_.telemetry.outputs,
             wiring_.warn,
             port_clock_now()},
@@ -89,11 +92,12 @@ void MapStage::run(const std::deque<MapWork>& rest) {
     outputs_.retry(port_clock_now());
     things_.retry(port_clock_now());
     bays_.retry(port_clock_now());
+    bays_.keep(*wiring_.bays.newest(), port_clock_now());
   }
   for (const MapWork& work : rest) take(work);
   outputs_.close(port_clock_now());
   things_.close(port_clock_now());
-  bays_.close(port_clock_now());
+  bays_.close(*wiring_.bays.newest(), port_clock_now());
 }
 
 void MapStage::take(const MapWork& work) {

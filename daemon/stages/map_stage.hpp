@@ -34,10 +34,11 @@ class MapStage {
     std::function<void(const MapRevision*, const ChangeNote&)> show;
     std::function<void(const control::CommandOutcome&)> answer;  ///< never waits
     ThingsBoard& things;                                         ///< for control and live page
+    const BaysBoard& bays;                                       ///< of the delta thread: kept for the next run
   };
   /// Begins the files of `out`.
-  MapStage(const Settings& settings, const StartMap& start, const std::optional<std::filesystem::path>& out,
-           StoreToKeep store, Wiring wiring);
+  MapStage(const Settings& settings, const StartMap& start, std::uint64_t first_map,
+           const std::optional<std::filesystem::path>& out, StoreToKeep store, Wiring wiring);
 
   /// The thread's work, until the channel is closed and empty; then what the delta thread could not hand over.
   void run(const std::deque<MapWork>& rest);

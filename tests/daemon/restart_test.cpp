@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "daemon/kept/kept_stability.hpp"
 #include "daemon/settings/memory_places.hpp"
+#include "drivers/port/port_clock.hpp"
 #include "mapping/store/map_store.hpp"
-#include "tests/support/daemon/pipeline_fixture.hpp"
+#include "tests/support/daemon/control_fixture.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -106,6 +108,46 @@ TEST_F(RestartTest, OnAnotherMapNothingOfItIsUsedAndThatIsSaid) {
   EXPECT_EQ(again.began.find("the map alone: the recorded run began from another one, with revision="), 0u)
       << again.began;
   EXPECT_EQ(again.journal.find("not obeyed: "), 0u);
+}
+
+class BaysRestartTest : public test::ControlDeskTest {
+ protected:
+  BaysRestartTest() {
+    settings_.map.store = folder_.path() / "store.sqlite";
+    settings_.bays.file =
+        folder_.write("bays.yaml", "bays:\n  - {id: B1, polygon: [[6.2, 3.4], [7.2, 3.4], [7.2, 4.4], [6.2, 4.4]]}\n")
+            .string();
+  }
+  [[nodiscard]] nlohmann::json bay() const { return asked({control::Request::Kind::kBays, {}})["bays"][0]; }
+};
+
+TEST_F(BaysRestartTest, WhatTheRunBeforeHasSeenOfABayIsShownWithItsAgeAndJudgesNothing) {
+  constexpr std::int64_t kThreeHours_ns = 3 * 3'600'000'000'000;
+  nlohmann::json before;
+  (void)run_live(std::chrono::microseconds(3000), [&](const Pipeline&) {
+    EXPECT_TRUE(test::comes_true([&] { return bay()["state"] != "unknown"; }));
+    before = bay();
+  });
+  EXPECT_FALSE(before.contains("remembered"));
+  const fs::path left = folder_.path() / "store.bays-seen.json";
+  auto kept = nlohmann::json::parse(test::content_of(left));
+  ASSERT_EQ(kept["bays"].size(), 1u) << kept;
+  EXPECT_EQ(kept["bays"][0]["state"], before["state"]);
+  for (const char* key : {"seen_ns", "since_ns"})  // the drive is played faster than it was driven
+    kept["bays"][0][key] = unix_ns(drivers::port::port_clock_now()) - kThreeHours_ns;
+  std::ofstream{left} << kept;
+  nlohmann::json after;
+  (void)run_live(std::chrono::microseconds(1000), [&](const Pipeline&) { after = bay(); });
+  EXPECT_EQ(after["remembered"], true) << after;
+  EXPECT_EQ(after["state"], before["state"]);
+  EXPECT_GE(after["age_s"].get<double>(), 10'800.0) << "never younger";
+  EXPECT_LT(after["age_s"].get<double>(), 10'920.0);
+  const std::string first = test::content_of(folder_.path() / "live/bays.jsonl");
+  EXPECT_EQ(nlohmann::json::parse(first.substr(0, first.find('\n')))["before"], "unknown") << first;
+  fs::remove(left);
+  (void)run_live(std::chrono::microseconds(1000), [&](const Pipeline&) { after = bay(); });
+  EXPECT_EQ(after["state"], "unknown") << "nobody has told";
+  EXPECT_EQ(after["last_seen"], nullptr);
 }
 
 }  // namespace

@@ -79,6 +79,19 @@ TEST_F(SiteDrawingTest, IsWrittenAndHoldsAndAReplayTakesItBeforeTheSameScan) {
   expect_same_files("live", "replayed");
 }
 
+TEST_F(SiteDrawingTest, WhatIsDrawnWhileNothingIsRecordedHoldsInTheReplayBehindTheGap) {
+  with_run([&] {
+    ASSERT_EQ(asked({Request::Kind::kRecordStop, {}})["ok"], true);
+    ASSERT_EQ(drawn(PlaceKind::kZone, kBoxZone)["ok"], true);
+    const int scan = status()["localized"];
+    ASSERT_TRUE(reached_scan(scan + 5));
+    ASSERT_EQ(asked({Request::Kind::kRecordStart, {}})["ok"], true);
+  });
+  EXPECT_EQ(content_of(folder_.path() / "live/things.jsonl"), "");
+  EXPECT_EQ(replay("live.pcapng", "replayed").commands, 2u);
+  EXPECT_EQ(content_of(folder_.path() / "replayed/things.jsonl"), "") << "the box was not written there, either";
+}
+
 TEST_F(SiteDrawingTest, WhatARewriteLosesIsKeptBesideItOnce) {
   with_run([&] {
     const Json reply = drawn(PlaceKind::kZone, kBoxZone);

@@ -11,7 +11,7 @@ const ASK_WHERE_NONE_MS = 30000;
 const INK_OF = { full: "--red", partly: "--orange", empty: "--green", unknown: "--soft" };
 
 const by_id = (id) => document.getElementById(id);
-const dashes_of = (state) => (state === "unknown" ? [3, 3] : []);
+const dashes_of = (state, is_remembered = false) => (state === "unknown" || is_remembered ? [3, 3] : []);
 
 export class Bays {
   /// `on_pick(bay or null)`: by a click; `on_news()`: there is another list.
@@ -76,7 +76,8 @@ export class Bays {
     state.className = `bay-${bay.state}`;
     explain(state, `bay ${bay.state}`);
     cell(bay.share === null ? "–" : `${Math.round(100 * bay.share)} %`);
-    cell(bay.age_s === null ? "never" : span_of(bay.age_s));
+    const seen = cell(bay.age_s === null ? "never" : `${span_of(bay.age_s)}${bay.remembered ? " *" : ""}`);
+    if (bay.remembered) explain(seen, "bay remembered");
     cell(bay.since === null ? "–" : clock(bay.since));
     return row;
   }
@@ -101,7 +102,7 @@ export function draw_bays(context, view, { bays, picked_bay }) {
     if (bay.state !== "unknown") context.fill();
     context.globalAlpha = 1;
     context.lineWidth = bay.bay === picked_bay ? 3.5 : 1.5;
-    context.setLineDash(dashes_of(bay.state));
+    context.setLineDash(dashes_of(bay.state, bay.remembered));
     context.stroke();
     context.setLineDash([]);
     if (view.scale < 12) continue;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/maps/kept_bays.hpp"
 #include "daemon/outputs/bay_note.hpp"
 #include "tests/support/daemon/saving_fixture.hpp"
 #include "tests/support/files/text_file.hpp"
@@ -50,6 +51,31 @@ TEST_F(BaysKeeperTest, WritesALineAChangeIntoBothFilesAndBeginsThemAnew) {
     EXPECT_EQ(line["age_s"], 1.0);
     EXPECT_EQ(line["things"], Json({3})) << "the other stands elsewhere";
   }
+}
+
+TEST_F(BaysKeeperTest, KeepsWhatIsKnownForTheNextRunSoonAfterAChangeAndNowAndThen) {
+  const auto seen = folder.path() / "store.bays-seen.json";
+  const auto list_at = [](double s) {
+    BayList list{{event().bay}, {event().status}};
+    list.statuses[0].seen = test::at_s(s);
+    return list;
+  };
+  const auto kept_at = [&] {
+    const BayList list = bays_of_kept_text(test::content_of(seen), 7, test::at_s(1000));
+    return list.statuses.empty() ? std::nullopt : list.statuses[0].seen;
+  };
+  BaysKeeper keeper{{.seen = seen, .first_map = 7}, telemetry.outputs, warn(), test::at_s(0)};
+  keeper.keep(list_at(8), test::at_s(9));
+  EXPECT_FALSE(std::filesystem::exists(seen)) << "nothing has changed, and it is not time";
+  keeper.take(event(), {}, test::at_s(9));
+  keeper.keep(list_at(8), test::at_s(9));
+  EXPECT_EQ(kept_at(), test::at_s(8));
+  keeper.keep(list_at(30), test::at_s(30));
+  EXPECT_EQ(kept_at(), test::at_s(8));
+  keeper.keep(list_at(69), test::at_s(70));
+  EXPECT_EQ(kept_at(), test::at_s(69));
+  keeper.close(list_at(75), test::at_s(75));
+  EXPECT_EQ(kept_at(), test::at_s(75));
 }
 
 TEST_F(BaysKeeperTest, WhatIsUnknownHasNoShare) {

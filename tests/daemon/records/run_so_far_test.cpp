@@ -62,6 +62,27 @@ TEST(RunSoFar, SaysThatMappingIsPaused) {
   EXPECT_EQ(so_far.beginning({}, at_s(2.0)).back().note, paused);
 }
 
+TEST(RunSoFar, SaysWhichBaysAndZonesAreInForce) {
+  RunSoFar so_far{{9600, 9600}};
+  SharedSite newest;
+  for (const char* id : {"early", "late"}) {
+    const Zone zone{.id = id, .polygon = {{1, 1}, {2, 1}, {2, 2}}};
+    newest = std::make_shared<const Site>(Site{{{.id = "B4", .polygon = {{1, 1}, {2, 1}, {2, 2}}}}, {zone}});
+    for (std::string& note : notes_of(SetSite{7, at_s(0.5), newest}))
+      so_far.read(record(PortId::kRobot, 1.0, {}, note));
+  }
+  Journal journal;
+  journal.read(note_of(RunIdentity{}));
+  for (const ByteRecord& one : so_far.beginning({}, at_s(2.0))) journal.read(one.note);
+  ASSERT_EQ(journal.commands().size(), 1u) << "the newest alone";
+  EXPECT_EQ(*journal.commands().front().site, *newest);
+  Scan first;
+  first.time = at_s(2.1);
+  EXPECT_TRUE(std::is_lt(journal.place_of(journal.commands().front(), first))) << "before the part's first scan";
+  for (const std::string& note : so_far.site_notes()) journal.read(note);
+  EXPECT_EQ(journal.commands().size(), 1u) << "repeated behind a gap it is no other command";
+}
+
 TEST(RunSoFar, WhatWasSaidBeforeIsDecodedAndNotHandedOver) {
   RecordingDecoder decoder{Settings{}};
   std::uint32_t odometry = 0;

@@ -32,10 +32,12 @@ TEST(MapStage, ARevisionIsServedBeforeAnyPoseCanNameIt) {
   RecorderInput recorder{8};
   Telemetry telemetry;
   ThingsBoard things;
+  const BaysBoard bays;
   std::uint32_t served = 0;
   bool was_handed_on_before = false;
   MapStage stage{settings,
                  {.map = hall},
+                 grid_hash(*hall),
                  std::nullopt,
                  {},
                  {.work = work,
@@ -50,7 +52,8 @@ TEST(MapStage, ARevisionIsServedBeforeAnyPoseCanNameIt) {
                         if (revision != nullptr) served = revision->number;
                       },
                   .answer = [](const control::CommandOutcome&) {},
-                  .things = things}};
+                  .things = things,
+                  .bays = bays}};
   auto set = set_with_a_box(hall, settings);
   ASSERT_TRUE(set);
   ASSERT_TRUE(work.try_send(MapWork{*std::move(set)}));
