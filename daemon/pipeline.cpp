@@ -93,6 +93,9 @@ struct Pipeline::State {
   void tell(const control::CommandOutcome& outcome) const {
     if (control) control->tell(outcome);
   }
+  void tell(PoseStream::EventKind kind, std::string line) const {
+    if (poses) poses->tell(kind, std::move(line));
+  }
   LiveSettings::Outcome reload();
   control::CommandOutcome draw(const SiteEditOrder& order);
   bool set_log_level(LogLevel level);
@@ -267,7 +270,9 @@ MapStage::Wiring Pipeline::State::map_wiring() {
               },
           .answer = [this](const control::CommandOutcome& outcome) { tell(outcome); },
           .things = things,
-          .bays = bays};
+          .bays = bays,
+          .tell_thing = [this](std::string line) { tell(PoseStream::EventKind::kThing, std::move(line)); },
+          .tell_bay = [this](std::string line) { tell(PoseStream::EventKind::kBay, std::move(line)); }};
 }
 
 // --- the threads ---

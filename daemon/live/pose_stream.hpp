@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pose of every localized scan as a line of JSON on a Unix socket, for a planner in another process (docs/api.md).
+// The pose of every localized scan as a line of JSON on a Unix socket, for a planner in another process, and for those
+// who ask for it what becomes of things and bays (docs/api.md).
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -19,10 +22,15 @@ namespace deltamap::daemon {
 class PoseStream {
  public:
   /// Listens from now on. Throws sockets::AlreadyServed, or std::runtime_error with one line that names the socket.
-  PoseStream(const Settings& settings, const Telemetry& telemetry);
+  PoseStream(const Settings& settings, const Telemetry& telemetry, std::function<void(const std::string&)> warn);
 
   /// Localization thread. Never waits: where nobody listens, or the stream's thread is far behind, nothing is sent.
   void show(const LocalizationRow& row, double latency_s);
+
+  enum class EventKind : std::uint8_t { kThing, kBay };
+  /// Map thread, never waits: a line of things.jsonl or bays.jsonl. Who asked for it is told how many are missing where
+  /// the stream's thread is far behind.
+  void tell(EventKind kind, std::string line);
 
   /// The thread's work, until stop().
   void run() { lines_.run(); }
@@ -35,7 +43,16 @@ class PoseStream {
  private:
   bool mapping_enabled_;
   const Telemetry& telemetry_;
+  struct Event {
+    EventKind kind;
+    std::string line;
+  };
+  [[nodiscard]] std::optional<sockets::LineStream::Line> next();
+
   Channel<PoseNews> news_{64};
+  Channel<Event> events_{256};
+  std::atomic<std::uint64_t> events_lost_{0};
+  std::uint64_t losses_told_ = 0;  // the stream's thread
   LoopPulse pulse_;
   sockets::LineStream lines_;  // last: it takes from the channel
 };

@@ -20,6 +20,8 @@
 #include <deque>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/sockets/accept_loop.hpp"
@@ -31,9 +33,15 @@ namespace {
 namespace asio = boost::asio;
 using Protocol = asio::local::stream_protocol;
 using boost::system::error_code;
-using Line = std::shared_ptr<const std::string>;  // with its line end
+constexpr std::size_t kMostSaid = 256;  // bytes of a client's line
 
-Line line_of(const std::string& text) { return std::make_shared<const std::string>(text + "\n"); }
+/// With its line end.
+using SharedLine = std::shared_ptr<const LineStream::Line>;
+
+SharedLine line_of(LineStream::Line line) {
+  line.text += "\n";
+  return std::make_shared<const LineStream::Line>(std::move(line));
+}
 
 int new_event() {
   const int event = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
@@ -44,29 +52,36 @@ int new_event() {
 class Client : public std::enable_shared_from_this<Client> {
  public:
   Client(Protocol::socket socket, const LineStream::Options& options, std::function<void(Client*)> on_end)
-      : socket_{std::move(socket)}, most_lines_{options.most_lines}, on_end_{std::move(on_end)} {
+      : socket_{std::move(socket)}, options_{options}, on_end_{std::move(on_end)}, kinds_{options.first_kinds} {
     error_code ignored;
     socket_.set_option(asio::socket_base::send_buffer_size(options.send_buffer_bytes), ignored);
   }
 
   /// Queues a line for this client; false where too many lines wait already.
-  [[nodiscard]] bool send(const Line& line) {
-    if (waiting_.size() >= most_lines_) return false;
+  [[nodiscard]] bool send(const SharedLine& line) {
+    if (ends_) return true;
+    std::size_t& waiting = line->is_soon_old ? soon_old_waiting_ : others_waiting_;
+    if (waiting >= (line->is_soon_old ? options_.most_lines : options_.most_others)) return false;
+    ++waiting;
     waiting_.push_back(line);
     if (waiting_.size() == 1) write();
     return true;
   }
-  void send_last(const Line& line) {
-    ends_ = true;
+  void send_last(const SharedLine& line) {
     (void)send(line);
+    ends_ = true;
   }
+  [[nodiscard]] bool wants(const LineStream::Line& line) const { return (kinds_ & line.kind) != 0; }
 
-  /// Waits for the client's end: clients of a stream send nothing, and bytes from one end it as well.
+  /// Waits for what the client says, and for its end.
   void listen() {
-    socket_.async_read_some(asio::buffer(heard_), [self = shared_from_this()](const error_code& error, std::size_t) {
-      const bool still_listens = error == asio::error::eof && !self->has_left();
-      if (!still_listens) self->on_end_(self.get());
-    });
+    socket_.async_read_some(asio::buffer(heard_),
+                            [self = shared_from_this()](const error_code& error, std::size_t count) {
+                              const bool still_listens = error == asio::error::eof && !self->has_left();
+                              if (still_listens) return;
+                              if (error || !self->hear({self->heard_.data(), count})) return self->on_end_(self.get());
+                              self->listen();
+                            });
   }
 
   [[nodiscard]] bool has_left() { return is_gone(socket_); }
@@ -77,9 +92,25 @@ class Client : public std::enable_shared_from_this<Client> {
   }
 
  private:
+  /// False where it is too much, or nobody understands it.
+  [[nodiscard]] bool hear(std::string_view bytes) {
+    if (!options_.hear) return false;
+    said_ += bytes;
+    for (auto end = said_.find('\n'); end != std::string::npos && !ends_; end = said_.find('\n')) {
+      const LineStream::Wish wish = options_.hear(said_.substr(0, end));
+      said_.erase(0, end + 1);
+      const SharedLine reply = line_of({.text = wish.reply});
+      if (wish.kinds == 0) send_last(reply);
+      if (wish.kinds != 0 && !send(reply)) return false;
+      kinds_ = wish.kinds;
+    }
+    return said_.size() <= kMostSaid;
+  }
+
   void write() {
-    asio::async_write(socket_, asio::buffer(*waiting_.front()),
+    asio::async_write(socket_, asio::buffer(waiting_.front()->text),
                       [self = shared_from_this()](const error_code& error, std::size_t) {
+                        --(self->waiting_.front()->is_soon_old ? self->soon_old_waiting_ : self->others_waiting_);
                         self->waiting_.pop_front();
                         if (error || (self->ends_ && self->waiting_.empty())) return self->on_end_(self.get());
                         if (!self->waiting_.empty()) self->write();
@@ -87,9 +118,13 @@ class Client : public std::enable_shared_from_this<Client> {
   }
 
   Protocol::socket socket_;
-  std::size_t most_lines_;
+  const LineStream::Options& options_;
   std::function<void(Client*)> on_end_;
-  std::deque<Line> waiting_;  // the first one is on its way
+  unsigned kinds_;
+  std::deque<SharedLine> waiting_;  // the first one is on its way
+  std::size_t soon_old_waiting_ = 0;
+  std::size_t others_waiting_ = 0;
+  std::string said_;  // a line that is not whole yet
   std::array<char, 64> heard_{};
   bool ends_ = false;
 };
@@ -109,8 +144,8 @@ struct LineStream::State {
     const bool is_full = clients.size() >= options.most_clients;
     clients.insert(client);
     count = clients.size();
-    if (is_full) return client->send_last(line_of(options.refusal));
-    (void)client->send(line_of(options.greeting));
+    if (is_full) return client->send_last(line_of({.text = options.refusal}));
+    (void)client->send(line_of({.text = options.greeting}));
     client->listen();
   }
 
@@ -130,9 +165,13 @@ struct LineStream::State {
   void wait_for_lines() {
     asio::async_read(event, asio::buffer(&woken, sizeof woken), [this](const error_code& error, std::size_t) {
       if (error) return;
-      while (const auto text = options.next()) {
-        const Line line = line_of(*text);
-        end_if([&line](Client& client) { return !client.send(line); });
+      while (auto next = options.next()) {
+        const SharedLine line = line_of(*std::move(next));
+        end_if([&](Client& client) {
+          const bool is_slow = client.wants(*line) && !client.send(line);
+          if (is_slow) options.dropped();
+          return is_slow;
+        });
       }
       wait_for_lines();
     });

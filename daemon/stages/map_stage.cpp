@@ -8,6 +8,7 @@
 
 #include "core/counted.hpp"
 #include "daemon/outputs/bay_note.hpp"
+#include "daemon/outputs/thing_note.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "drivers/port/port_clock.hpp"
 
@@ -176,6 +177,7 @@ void MapStage::hand_on(const MapStep::Result& result) {
 
 void MapStage::tell_things(const std::vector<mapping::things::ThingEvent>& events) {
   for (const auto& event : events) {
+    wiring_.tell_thing(json_line(event));
     if (event.is_new) wiring_.log("thing " + std::to_string(event.thing.id) + ": " + words_of(event.thing));
   }
   if (!events.empty()) wiring_.things.set(things_.list());
@@ -183,7 +185,9 @@ void MapStage::tell_things(const std::vector<mapping::things::ThingEvent>& event
 
 void MapStage::tell_bay(const mapping::bays::BayEvent& event) {
   wiring_.log(words_of(event));
-  bays_.take(event, wiring_.things.newest()->things, port_clock_now());
+  const auto things = wiring_.things.newest();
+  bays_.take(event, things->things, port_clock_now());
+  wiring_.tell_bay(json_line(event, things->things));
 }
 
 }  // namespace deltamap::daemon

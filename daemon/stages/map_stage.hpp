@@ -35,6 +35,8 @@ class MapStage {
     std::function<void(const control::CommandOutcome&)> answer;  ///< never waits
     ThingsBoard& things;                                         ///< for control and live page
     const BaysBoard& bays;                                       ///< of the delta thread: kept for the next run
+    std::function<void(std::string line)> tell_thing = [](const std::string&) {};  ///< of things.jsonl; never waits
+    std::function<void(std::string line)> tell_bay = [](const std::string&) {};    ///< of bays.jsonl; never waits
   };
   /// Begins the files of `out`.
   MapStage(const Settings& settings, const StartMap& start, std::uint64_t first_map,

@@ -3,6 +3,7 @@
 #include "daemon/live/pose_stream.hpp"
 
 #include <map>
+#include <thread>
 
 #include "tests/support/daemon/control_fixture.hpp"
 
@@ -62,6 +63,57 @@ TEST_F(PoseStreamTest, TellsTheVeryPosesThatTheRunWritesScanByScan) {
     EXPECT_TRUE(pose["gate"].contains("open"));
   }
   EXPECT_FALSE(std::filesystem::exists(settings_.poses.socket));
+}
+
+TEST_F(PoseStreamTest, WhoAsksForThingsAndBaysIsToldTheLinesOfTheirFilesAndNobodyElseIs) {
+  settings_.bays.file =
+      folder_.write("bays.yaml", "bays:\n  - {id: B1, polygon: [[4.6, 4.6], [6, 4.6], [6, 5.8], [4.6, 5.8]]}\n")
+          .string();
+  std::vector<std::string> told;
+  std::vector<std::string> types;
+  std::thread reader;
+  (void)run_live(std::chrono::microseconds(3000), [&](const Pipeline&) {
+    auto events = std::make_shared<test::SocketClient>(settings_.poses.socket);
+    auto silent = std::make_shared<test::SocketClient>(settings_.poses.socket);
+    EXPECT_EQ(json::parse(events->line())["type"], "hello");
+    EXPECT_EQ(json::parse(events->asked(R"({"want":["things","bays"]})")),
+              json::parse(R"({"type":"wanted","want":["things","bays"]})"));
+    reader = std::thread{[events, silent, &told, &types] {
+      for (std::string line = events->line(); !line.empty(); line = events->line()) told.push_back(line);
+      for (std::string line = silent->line(); !line.empty(); line = silent->line()) {
+        const json told_to_all = json::parse(line, nullptr, false);  // cut where it was too slow
+        if (told_to_all.is_object()) types.push_back(told_to_all["type"]);
+      }
+    }};
+  });
+  reader.join();
+  std::string things;
+  std::string bays;
+  for (const std::string& line : told) {
+    const std::string type = json::parse(line)["type"];
+    const std::string head = "{\"type\":\"" + type + "\",";
+    ASSERT_TRUE(line.starts_with(head)) << line;
+    (type == "thing" ? things : bays) += "{" + line.substr(head.size()) + "\n";
+  }
+  const std::string written = test::content_of(folder_.path() / "live/bays.jsonl");
+  EXPECT_FALSE(bays.empty()) << "the drive sees the bay";
+  EXPECT_TRUE(written.starts_with(bays)) << "what comes after the last pose is in the file alone";
+  EXPECT_TRUE(test::content_of(folder_.path() / "live/things.jsonl").starts_with(things));
+  for (const std::string& type : types) EXPECT_TRUE(type == "hello" || type == "pose") << type;
+}
+
+TEST_F(PoseStreamTest, WhatIsNoListOfItsKindsIsRefusedWithWhatToSay) {
+  (void)run_live(std::chrono::microseconds(2000), [&](const Pipeline&) {
+    for (const char* wish : {R"({"want":[]})", R"({"want":["poses","cells"]})", R"({"want":"poses"})", "[]", "x"}) {
+      test::SocketClient client{settings_.poses.socket};
+      (void)client.line();
+      EXPECT_TRUE(client.send(std::string(wish) + "\n"));
+      std::string line = client.line();
+      while (json::parse(line)["type"] == "pose") line = client.line();
+      EXPECT_EQ(json::parse(line)["why"], "ask with {\"want\":[…]}: a list of poses, things, bays") << wish;
+      EXPECT_EQ(client.line(), "");
+    }
+  });
 }
 
 TEST_F(PoseStreamTest, WithoutDeltaMappingThereIsNoGate) {

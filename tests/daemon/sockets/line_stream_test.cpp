@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <deque>
 #include <mutex>
 #include <thread>
@@ -26,8 +27,9 @@ class LineStreamTest : public testing::Test {
   [[nodiscard]] LineStream::Options options() {
     return {.socket = socket(), .greeting = "hello", .refusal = "no", .next = [this] { return taken(); }};
   }
-  void begin() {
-    stream_.emplace(options());
+  void begin() { begin(options()); }
+  void begin(LineStream::Options options) {
+    stream_.emplace(std::move(options));
     thread_ = std::jthread{[this] { stream_->run(); }};
   }
   void end() {
@@ -36,7 +38,8 @@ class LineStreamTest : public testing::Test {
     thread_.join();
     stream_.reset();
   }
-  void say(const std::string& line) {
+  void say(const std::string& text) { say(LineStream::Line{.text = text}); }
+  void say(const LineStream::Line& line) {
     {
       const std::scoped_lock lock{mutex_};
       lines_.push_back(line);
@@ -59,16 +62,16 @@ class LineStreamTest : public testing::Test {
   std::optional<LineStream> stream_;
 
  private:
-  std::optional<std::string> taken() {
+  std::optional<LineStream::Line> taken() {
     const std::scoped_lock lock{mutex_};
     if (lines_.empty()) return std::nullopt;
-    std::string line = lines_.front();
+    LineStream::Line line = lines_.front();
     lines_.pop_front();
     return line;
   }
 
   std::mutex mutex_;
-  std::deque<std::string> lines_;
+  std::deque<LineStream::Line> lines_;
   std::jthread thread_;
 };
 
@@ -118,6 +121,52 @@ TEST_F(LineStreamTest, AClientThatSaysSomethingIsDisconnected) {
   EXPECT_EQ(chatty.line(), "hello");
   EXPECT_TRUE(chatty.send("{\"command\":\"status\"}\n"));
   EXPECT_EQ(chatty.line(), "");
+}
+
+TEST_F(LineStreamTest, AClientGetsTheKindsThatItAsksForAndOthersGetWhatTheyAlwaysGot) {
+  LineStream::Options asked = options();
+  asked.hear = [](const std::string& line) -> LineStream::Wish {
+    return line == "second" ? LineStream::Wish{2, "yes"} : LineStream::Wish{0, "what?"};
+  };
+  begin(std::move(asked));
+  SocketClient silent{socket()};
+  SocketClient asks{socket()};
+  SocketClient mumbles{socket()};
+  for (SocketClient* client : {&silent, &asks, &mumbles}) EXPECT_EQ(client->line(), "hello");
+  EXPECT_EQ(mumbles.asked("hm"), "what?");
+  EXPECT_EQ(mumbles.line(), "") << "that was its last line";
+  EXPECT_TRUE(asks.send("sec"));
+  EXPECT_EQ(asks.asked("ond"), "yes") << "a line may come in pieces";
+  say(LineStream::Line{.text = "a", .kind = 1});
+  say(LineStream::Line{.text = "b", .kind = 2});
+  say(LineStream::Line{.text = "c", .kind = 1});
+  EXPECT_EQ(silent.line(), "a");
+  EXPECT_EQ(silent.line(), "c");
+  EXPECT_EQ(asks.line(), "b");
+  SocketClient endless{socket()};
+  EXPECT_EQ(endless.line(), "hello");
+  EXPECT_TRUE(endless.send(std::string(2000, 'x')));
+  EXPECT_EQ(endless.line(), "") << "a line that never ends";
+}
+
+TEST_F(LineStreamTest, ABurstOfWhatIsNotSoonOldWaitsForASlowClientAndThenItIsDroppedAndTold) {
+  std::atomic<int> dropped = 0;
+  LineStream::Options asked = options();
+  asked.first_kinds = 3;
+  asked.dropped = [&] { ++dropped; };
+  begin(std::move(asked));
+  SocketClient stalls{socket()};
+  EXPECT_EQ(stalls.line(), "hello");
+  const std::string line(600, 'x');
+  for (int i = 0; i < 400; ++i)
+    say(LineStream::Line{.text = line + std::to_string(i), .kind = 2, .is_soon_old = false});
+  for (int i = 0; i < 400; ++i) ASSERT_EQ(stalls.line(), line + std::to_string(i));
+  EXPECT_EQ(dropped, 0);
+  for (int i = 0; i < 2000; ++i) say(LineStream::Line{.text = line, .kind = 2, .is_soon_old = false});
+  while (dropped == 0) std::this_thread::yield();
+  int got = 0;
+  while (stalls.line() == line) ++got;
+  EXPECT_LT(got, 2000);
 }
 
 TEST_F(LineStreamTest, AClientThatOnlyHasNothingToSayStillListens) {
