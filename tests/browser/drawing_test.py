@@ -79,6 +79,7 @@ class DrawingTest(PageCase):
         self.click(browser, "#drawing-save")
         self.until(lambda: len(self.site()["zones"]["places"][0]["vertices"]) == 5)
         self.expect_near(self.site()["zones"]["places"][0]["vertices"], [(5, 4), (6, 4), (7, 4), (8, 7), (5, 6)])
+        browser.wait("!document.querySelector('#drawing-remove').disabled")
         self.click(browser, "#drawing-remove")
         self.choose(browser, "Take away")
         self.until(lambda: self.site()["zones"]["places"] == [])

@@ -135,13 +135,13 @@ export class Drawing {
   /// What was drawn stays where the daemon refuses it; the list is read again, for somebody else may have drawn.
   async send(what, id) {
     const { kind } = this, request = { command: kind, version: this.list.version, ...(this.of && { of: this.of }), ...what };
+    by_id("drawing-save").disabled = by_id("drawing-remove").disabled = true;  // one after another
     const answer = await this.row.run(request, "checking and writing …");
-    if (!this.is_on || !await this.read()) return;
-    if (answer.ok) {
-      this.on_saved();
-      return this.choose_quietly(`${kind}:${id}`);
-    }
+    if (answer.ok) this.on_saved();
+    const is_read = this.is_on && await this.read();
+    if (is_read && answer.ok) return this.choose_quietly(`${kind}:${id}`);
     by_id("drawing-place").value = `${kind}:${this.of}`;
+    this.show_fields();
   }
 
   /// The daemon's answer stays in sight.
