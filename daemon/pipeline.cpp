@@ -7,7 +7,6 @@
 
 #include "core/channel.hpp"
 #include "core/files/file_lock.hpp"
-#include "core/files/replace_file.hpp"
 #include "daemon/control/control_desk.hpp"
 #include "daemon/incidents/incident_keeper.hpp"
 #include "daemon/incidents/incident_list.hpp"
@@ -19,6 +18,7 @@
 #include "daemon/outputs/thing_note.hpp"
 #include "daemon/records/map_order.hpp"
 #include "daemon/records/recorder.hpp"
+#include "daemon/run_files.hpp"
 #include "daemon/settings/memory_places.hpp"
 #include "daemon/settings/start_error.hpp"
 #include "daemon/site_drawing.hpp"
@@ -38,17 +38,6 @@ constexpr int kRecorderNiceness = 5;
 constexpr int kControlNiceness = 5;
 constexpr int kPageNiceness = 10;
 constexpr double kPatience = 10.0;  // map and recorder may be silent so many times longer than other stages
-
-std::filesystem::path in_folder(const std::optional<std::filesystem::path>& folder, const char* name) {
-  return folder ? *folder / name : std::filesystem::path{};
-}
-
-/// What the stages log is heard by `tail`, too.
-Pipeline::Options with_warnings(Pipeline::Options options, LogTail& tail) {
-  options.warn = heard_by(tail, &drivers::port::port_clock_now, options.warn ? options.warn : options.log, true);
-  options.log = heard_by(tail, &drivers::port::port_clock_now, std::move(options.log), false);
-  return options;
-}
 
 }  // namespace
 
@@ -101,7 +90,6 @@ struct Pipeline::State {
   bool set_log_level(LogLevel level);
   void begin_threads();
   void end_threads();
-  void write_report(const RunReport& report) const;
 
   control::ControlDesk::Wiring control_wiring();
   std::vector<std::string> notes_of_begin() const;
@@ -149,8 +137,7 @@ Pipeline::State::State(const Settings& given, Options wanted)
   begin_threads();
 }
 
-// --- what joins the parts: called in the order of the members, each names only what stands before it, or what runs
-// later ---
+// --- what joins the parts: in the order of the members, each names what stands before it, or what runs later ---
 
 control::ControlDesk::Wiring Pipeline::State::control_wiring() {
   return {.map = options.start.map->geometry(),
@@ -373,15 +360,6 @@ void Pipeline::State::end_threads() {
   recorder_thread->join();
 }
 
-/// Writes the run's report; a failure is only a warning, because the run itself has ended well.
-void Pipeline::State::write_report(const RunReport& report) const {
-  try {
-    replace_file(*options.out / "report.json", json_text(report, options.live ? options.live->in_force() : settings));
-  } catch (const std::exception& error) {
-    options.warn(std::string("no report of this run: ") + error.what());
-  }
-}
-
 RunReport Pipeline::stop() {
   State& s = *state_;
   s.end_threads();
@@ -401,7 +379,7 @@ RunReport Pipeline::stop() {
   report.latency_of = "last byte of a scan to its pose";
   report.latency = s.localization.latency();
   report.wire = s.io.counts();
-  if (s.options.out) s.write_report(report);
+  if (s.options.out) write_report(s.options, s.settings, report);
   return report;
 }
 
