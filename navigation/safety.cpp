@@ -210,10 +210,12 @@ double Safety::safe_share(const Motion& wished, const Ground& ground) const {
   return safe;
 }
 
-/// Of borders that nobody has placed anew for a while nobody knows where they are by now.
+/// Of zones that nobody has placed anew for a while nobody knows where they are by now, near or not.
+bool Safety::are_zones_stale(Timestamp now) const { return zones_.bind && seconds(now - zones_.time) > kOldestViewS; }
+
 double Safety::share_before_zones(const Motion& wished, Timestamp now) const {
+  if (are_zones_stale(now)) return 0.0;
   if (zones_.blocked_in_robot.empty()) return 1.0;
-  if (seconds(now - zones_.time) > kOldestViewS) return 0.0;
   return safe_share(wished, {zones_.blocked_in_robot, unseen_s(zones_.time, now), false});
 }
 
@@ -237,7 +239,8 @@ AllowedMotion Safety::allowed(Timestamp now) const {
     const Motion free = scaled(ahead, safe_share(ahead, seen));
     const Motion motion = scaled(free, share_before_zones(free, now));
     if (motion.speed_m_per_s >= kCrawlMPerS) return {motion.speed_m_per_s, motion.turn_rate_rad_per_s};
-    if (free.speed_m_per_s >= kCrawlMPerS) in_the_way = StopReason::kBlockedZone;
+    if (free.speed_m_per_s >= kCrawlMPerS)
+      in_the_way = are_zones_stale(now) ? StopReason::kPoseUnknown : StopReason::kBlockedZone;
   }
   const bool may_turn = nearest_m(scan_->obstacles_in_robot) > params_.robot_radius_m &&
                         coasts_clear({0.0, wished.turn_rate_rad_per_s}, params_.robot_radius_m, seen);

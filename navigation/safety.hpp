@@ -164,6 +164,7 @@ class Safety {
   [[nodiscard]] bool can_stop_ahead(Timestamp now) const;
   [[nodiscard]] bool must_brake_hard(Timestamp now) const;
   [[nodiscard]] double safe_share(const Motion& wished, const Ground& ground) const;
+  [[nodiscard]] bool are_zones_stale(Timestamp now) const;
   [[nodiscard]] double share_before_zones(const Motion& wished, Timestamp now) const;
 
   SafetyParams params_;

@@ -3,8 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "core/geometry/angle.hpp"
 
 namespace deltamap::navigation {
+namespace {
+
+constexpr double kAsideRad = radians(20.0);  // a robot on an arc meets what does not lie straight ahead
+
+}  // namespace
 
 std::vector<Point2> blocked_borders(const Zones& zones, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
   std::vector<Point2> points;
@@ -33,16 +41,45 @@ std::vector<Point2> blocked_borders(const Zones& zones, const Pose2& map_from_ro
 
 ZonesAround zones_around(const Zones& zones, const Pose2& map_from_robot, Timestamp time,
                          const ZonedDrivingParams& params) {
-  return {time, blocked_borders(zones, map_from_robot, params), speed_limit_m_per_s(zones, map_from_robot, params)};
+  ZonesAround around{.time = time,
+                     .blocked_in_robot = blocked_borders(zones, map_from_robot, params),
+                     .most_speed_m_per_s = speed_limit_m_per_s(zones, map_from_robot, params)};
+  for (const Zone& zone : zones) {
+    around.bind = around.bind || zone.kind == ZoneKind::kBlocked || zone.kind == ZoneKind::kSpeedLimit;
+    if (zone.kind != ZoneKind::kBlocked || !contains(zone.polygon, map_from_robot.position())) continue;
+    around.blocked_around = zone.id;
+    around.most_speed_m_per_s = std::min(around.most_speed_m_per_s, params.leaves_at_most_m_per_s);
+  }
+  return around;
 }
+
+namespace {
+
+/// How far the zone lies ahead, to either side, too; 0 where the robot is in it; nothing beyond `within_m`.
+std::optional<double> way_to_m(const Zone& zone, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
+  if (contains(zone.polygon, map_from_robot.position())) return 0.0;
+  const int steps = static_cast<int>(params.within_m / params.step_m);
+  for (int step = 1; step <= steps; ++step) {
+    const double ahead_m = step * params.step_m;
+    for (const double aside_rad : {0.0, kAsideRad, -kAsideRad}) {
+      const Point2 place{ahead_m * std::cos(aside_rad), ahead_m * std::sin(aside_rad)};
+      if (contains(zone.polygon, map_from_robot * place)) return ahead_m;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 double speed_limit_m_per_s(const Zones& zones, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
   double limit = std::numeric_limits<double>::infinity();
-  const Point2 ahead = map_from_robot * Point2{params.brakes_within_m, 0.0};
   for (const Zone& zone : zones) {
     if (zone.kind != ZoneKind::kSpeedLimit) continue;
-    if (contains(zone.polygon, map_from_robot.position()) || contains(zone.polygon, ahead))
-      limit = std::min(limit, zone.most_speed_m_per_s);
+    const auto way_m = way_to_m(zone, map_from_robot, params);
+    if (!way_m) continue;
+    const double brakes_m = std::max(0.0, *way_m - params.brakes_within_m);
+    const double most = zone.most_speed_m_per_s;
+    limit = std::min(limit, std::sqrt(most * most + 2.0 * params.braking_m_per_s2 * brakes_m));
   }
   return limit;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -12,14 +13,18 @@
 namespace deltamap::navigation {
 
 struct ZonedDrivingParams {
-  double within_m = 3.0;         ///< nearer borders count, from the robot's middle; > 0
-  double step_m = 0.1;           ///< between points of a border; > 0, smaller than the robot
-  double brakes_within_m = 0.5;  ///< so far before it a limit holds already; >= 0
+  double within_m = 8.0;                ///< nearer borders count, from the robot's middle: it stops within them; > 0
+  double step_m = 0.1;                  ///< between points of a border; > 0, smaller than the robot
+  double brakes_within_m = 0.5;         ///< so far before it a limit holds already; >= 0
+  double braking_m_per_s2 = 0.3;        ///< farther before it no more than this brakes to it; > 0
+  double leaves_at_most_m_per_s = 0.1;  ///< within a blocked zone; > 0
 };
 
 /// What they ask around one pose. Nothing of a pose that does not hold.
 struct ZonesAround {
   Timestamp time{};                        ///< of the pose
+  bool bind = false;                       ///< the site has zones that say where or how fast to drive
+  std::string blocked_around{};            ///< id of the blocked zone that it stands in: not heeded until it has left
   std::vector<Point2> blocked_in_robot{};  ///< in its frame: obstacles that no laser sees
   double most_speed_m_per_s = std::numeric_limits<double>::infinity();
 };
@@ -32,7 +37,8 @@ struct ZonesAround {
 [[nodiscard]] std::vector<Point2> blocked_borders(const Zones& zones, const Pose2& map_from_robot,
                                                   const ZonedDrivingParams& params = {});
 
-/// The lowest limit of the zones that it is in, or is about to be; infinite where there is none.
+/// The lowest limit of the zones that it is in, or is about to be; before those ahead as much more as it can brake;
+/// infinite where there is none.
 [[nodiscard]] double speed_limit_m_per_s(const Zones& zones, const Pose2& map_from_robot,
                                          const ZonedDrivingParams& params = {});
 

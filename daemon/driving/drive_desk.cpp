@@ -114,6 +114,11 @@ void DriveDesk::take(const PilotWord& word, Timestamp now) {
   pose_stop_ = word.pose;
   safety_.set_wheels_spin(word.wheels_spin);
   safety_.set_misses_walls(word.misses_walls);
+  if (!word.zones.blocked_around.empty() && std::exchange(blocked_around_, word.zones.blocked_around).empty()) {
+    wiring_.warn("the robot stands in blocked zone '" + word.zones.blocked_around +
+                 "', which is not heeded until it has left: it drives slowly, drive it out");
+  }
+  if (word.zones.bind) blocked_around_ = word.zones.blocked_around;
   safety_.heed(word.zones);
   wiring_.telemetry.zone_limit_m_per_s.set(word.zones.most_speed_m_per_s);
   safety_.expect_no_range(word.expects_no_range ? std::optional{word.command.time} : std::nullopt);

@@ -90,6 +90,7 @@ class DriveDesk {
   navigation::StopReason pose_stop_ = navigation::StopReason::kNone;  // of the newest scan
   bool creeps_ = false;                                               // as last told
   bool is_port_open_ = false;
+  std::string blocked_around_;    // blocked zone that the robot stands in; empty: none
   std::uint64_t in_hand_of_ = 0;  // nobody else's commands are listened to; 0: in nobody's
   Timestamp hand_moved_{};        // of the newest command by hand
   Timestamp robot_heard_at_{};

@@ -77,7 +77,8 @@ void IncidentKeeper::begin_ring(Timestamp now) {
   const std::filesystem::path folder = options_.settings.incidents.folder;
   std::filesystem::create_directories(folder);
   if (!lock_) lock_ = lock_of_folder(folder);
-  if (!std::exchange(is_left_aside_, true)) set_left_aside(folder);
+  if (!is_left_aside_) set_left_aside(folder);
+  is_left_aside_ = true;
   remove_drafts(folder);
   const bool is_start = now == options_.began;
   ring_.emplace(folder / kRingFolder, kRingS);

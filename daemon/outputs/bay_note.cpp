@@ -62,7 +62,7 @@ std::string json_line(const BayEvent& event, const std::vector<Thing>& things) {
   json["before"] = name_of(event.before);
   add_status(json, event.status, event.time);
   json["things"] = things_in(event.bay, things);
-  return json.dump() + "\n";
+  return json.dump(-1, ' ', false, BayJson::error_handler_t::replace) + "\n";
 }
 
 std::string json_of(const BayList& list, const ThingList& things, Timestamp now) {
@@ -77,7 +77,7 @@ std::string json_of(const BayList& list, const ThingList& things, Timestamp now)
     for (const Point2& corner : list.bays[i].polygon) bay["polygon_m"].push_back({corner.x(), corner.y()});
     json["bays"].push_back(std::move(bay));
   }
-  return json.dump();
+  return json.dump(-1, ' ', false, BayJson::error_handler_t::replace);
 }
 
 std::string words_of(const BayEvent& event) {

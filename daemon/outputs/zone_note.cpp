@@ -17,7 +17,7 @@ std::string json_of(const Zones& zones) {
     for (const Point2& corner : zone.polygon) one["vertices"].push_back({{"x", corner.x()}, {"y", corner.y()}});
     json["zones"].push_back(std::move(one));
   }
-  return json.dump();
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace deltamap::daemon

@@ -87,8 +87,8 @@ std::vector<Bay> bays_on(const GridGeometry& map, const std::string& file) {
 
 std::vector<Bay> bays_of_places(const std::vector<ListedPlace>& places, const std::string& name,
                                 const GridGeometry& map) {
+  require_on_map(places, name, "bay", map);  // first: what is as large as a town takes long to be held apart
   require_sound_places(places, name);
-  require_on_map(places, name, "bay", map);
   return bays_of(places);
 }
 

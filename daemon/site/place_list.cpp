@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/files/shortest_text.hpp"
+#include "daemon/settings/reader/text_character.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -31,8 +32,9 @@ double coordinate_in(const YAML::Node& node, const YAML::Node& corner, const std
       value = NAN;
     }
   }
+  value = std::round(1e3 * value) / 1e3;
   if (!std::isfinite(value)) refuse_place(corner, file, "a corner must be [x, y] or {x: …, y: …}, in metres");
-  return std::round(1e3 * value) / 1e3;
+  return value;
 }
 
 Polygon polygon_in(const YAML::Node& node, const std::string& file, const std::string& key) {
@@ -71,6 +73,19 @@ ListedPlace place_in(const YAML::Node& node, const std::string& file, const Plac
   return place;
 }
 
+void require_utf8(std::string_view text, const std::string& file) {
+  int line = 1;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto character = character_at(text, at);
+    if (!character) {
+      throw std::runtime_error(file + ": line " + std::to_string(line) +
+                               ": a character that is not UTF-8: write the file in UTF-8");
+    }
+    line += character->code == U'\n' ? 1 : 0;
+    at += character->bytes;
+  }
+}
+
 /// Any text, on one line.
 std::string quoted(const std::string& text) {
   YAML::Emitter out;
@@ -83,6 +98,7 @@ std::string in_mm(double length_m) { return shortest_text(std::round(1e3 * lengt
 }  // namespace
 
 std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& file, const PlaceKeys& keys) {
+  require_utf8(yaml, file);
   YAML::Node root;
   try {
     root = YAML::Load(std::string(yaml));

@@ -40,12 +40,14 @@ ZoneKind kind_of(const ListedPlace& place, const std::string& file) {
                   ": FROZEN, TEMPORARY, IGNORE, BLOCKED or SPEED_LIMIT");
 }
 
+constexpr double kLeastSpeed_m_per_s = 0.05;  // slower no robot drives
+
 double speed_of(const ListedPlace& place, const std::string& file) {
   const std::string word = word_of(place, "maximumSpeed");
   double speed = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), speed);
-  if (error != std::errc{} || end != word.data() + word.size() || !(speed > 0.0 && speed <= 10.0))
-    refuse_zone(file, place, "needs a maximumSpeed above 0 and up to 10 m/s");
+  if (error != std::errc{} || end != word.data() + word.size() || !(speed >= kLeastSpeed_m_per_s && speed <= 10.0))
+    refuse_zone(file, place, "needs a maximumSpeed from 0.05 to 10 m/s; where nobody may drive it is BLOCKED");
   return speed;
 }
 

@@ -100,6 +100,7 @@ class Client : public std::enable_shared_from_this<Client> {
       const LineStream::Wish wish = options_.hear(said_.substr(0, end));
       said_.erase(0, end + 1);
       const SharedLine reply = line_of({.text = wish.reply});
+      if (wish.kinds == 0 && !waiting_.empty()) return false;  // who does not read would keep its place for ever
       if (wish.kinds == 0) send_last(reply);
       if (wish.kinds != 0 && !send(reply)) return false;
       kinds_ = wish.kinds;

@@ -133,7 +133,8 @@ class SerialLine : public std::enable_shared_from_this<SerialLine> {
   /// A frame comes in twenty pieces and more: they are read together when all must have come, and still each byte is
   /// dated by those that followed it, but for the margin.
   void rest_or_wait(std::size_t awaited) {
-    const auto rest = std::chrono::microseconds(10'000'000 * awaited / baud_) + kRestMargin;
+    const auto rest =
+        std::chrono::microseconds(std::int64_t{10'000'000} * static_cast<std::int64_t>(awaited) / baud_) + kRestMargin;
     if (rest < kShortestRest || !tasks_.empty()) return wait_for_input();
     detach();
     read_after(std::min<std::chrono::microseconds>(rest, kLongestRest));

@@ -181,7 +181,7 @@ TEST(Safety, SlowsDownSoFarThatTheStopDistanceIsFree) {
 
 /// A border 1 m wide across the way.
 ZonesAround border_at(double ahead_m, Timestamp time = kNow) {
-  ZonesAround zones{.time = time};
+  ZonesAround zones{.time = time, .bind = true};
   for (int i = -5; i <= 5; ++i) zones.blocked_in_robot.emplace_back(ahead_m, 0.1 * i);
   return zones;
 }
@@ -196,7 +196,9 @@ TEST(Safety, ComesToRestBeforeABlockedZoneWhoeverDrivesAndLetsTheRobotTurnAway) 
   safety.heed(border_at(1.5, after(-0.5)));
   EXPECT_LT(safety.allowed(kNow).speed_m_per_s, v) << "it is nearer by now";
   safety.heed(border_at(2.9, after(-60.0)));
-  expect_stop(safety.allowed(kNow), StopReason::kBlockedZone);
+  expect_stop(safety.allowed(kNow), StopReason::kPoseUnknown);
+  safety.heed({.time = after(-60.0), .bind = true});
+  expect_stop(safety.allowed(kNow), StopReason::kPoseUnknown);  // no border was near then
   safety.heed(border_at(0.33));
   safety.command({kNow, 0.5, 0.3}, kNow);
   expect_stop(safety.allowed(kNow), StopReason::kBlockedZone);

@@ -66,7 +66,12 @@ TEST_F(ZonesFile, SaysInOneLineWhatCannotBe) {
             "line 2: zone 'Z' has the unknown zoneType 'WALL': FROZEN, TEMPORARY, IGNORE, BLOCKED or SPEED_LIMIT");
   EXPECT_EQ(complaint(with("zoneDescriptor: x")),
             "line 2: zone 'Z' has no zoneType: FROZEN, TEMPORARY, IGNORE, BLOCKED or SPEED_LIMIT");
-  EXPECT_EQ(complaint(with("zoneType: SPEED_LIMIT")), "line 2: zone 'Z' needs a maximumSpeed above 0 and up to 10 m/s");
+  EXPECT_EQ(complaint(with("zoneType: SPEED_LIMIT")),
+            "line 2: zone 'Z' needs a maximumSpeed from 0.05 to 10 m/s; where nobody may drive it is BLOCKED");
+  EXPECT_TRUE(complaint(with("zoneType: SPEED_LIMIT\n    maximumSpeed: 0.015")).find("from 0.05 to 10 m/s") !=
+              std::string::npos);
+  EXPECT_EQ(complaint(with("zoneType: FROZEN\n    zoneDescriptor: T\xFCr")),
+            "line 5: a character that is not UTF-8: write the file in UTF-8");
   EXPECT_EQ(complaint(with("zoneType: FROZEN\n    maximumSpeed: 1")),
             "line 2: zone 'Z' has a maximumSpeed, which only SPEED_LIMIT has");
   EXPECT_EQ(complaint(kZones + "  - {zoneId: gate, zoneType: IGNORE, vertices: [[1, 1], [3, 1], [3, 3]]}\n"),
