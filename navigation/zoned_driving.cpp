@@ -12,6 +12,20 @@ namespace {
 
 constexpr double kAsideRad = radians(20.0);  // a robot on an arc meets what does not lie straight ahead
 
+/// How far the zone lies ahead, to either side, too; 0 where the robot is in it; nothing beyond `within_m`.
+std::optional<double> way_to_m(const Zone& zone, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
+  if (contains(zone.polygon, map_from_robot.position())) return 0.0;
+  const int steps = static_cast<int>(params.within_m / params.step_m);
+  for (int step = 1; step <= steps; ++step) {
+    const double ahead_m = step * params.step_m;
+    for (const double aside_rad : {0.0, kAsideRad, -kAsideRad}) {
+      const Point2 place{ahead_m * std::cos(aside_rad), ahead_m * std::sin(aside_rad)};
+      if (contains(zone.polygon, map_from_robot * place)) return ahead_m;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<Point2> blocked_borders(const Zones& zones, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
@@ -52,24 +66,6 @@ ZonesAround zones_around(const Zones& zones, const Pose2& map_from_robot, Timest
   }
   return around;
 }
-
-namespace {
-
-/// How far the zone lies ahead, to either side, too; 0 where the robot is in it; nothing beyond `within_m`.
-std::optional<double> way_to_m(const Zone& zone, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
-  if (contains(zone.polygon, map_from_robot.position())) return 0.0;
-  const int steps = static_cast<int>(params.within_m / params.step_m);
-  for (int step = 1; step <= steps; ++step) {
-    const double ahead_m = step * params.step_m;
-    for (const double aside_rad : {0.0, kAsideRad, -kAsideRad}) {
-      const Point2 place{ahead_m * std::cos(aside_rad), ahead_m * std::sin(aside_rad)};
-      if (contains(zone.polygon, map_from_robot * place)) return ahead_m;
-    }
-  }
-  return std::nullopt;
-}
-
-}  // namespace
 
 double speed_limit_m_per_s(const Zones& zones, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
   double limit = std::numeric_limits<double>::infinity();
