@@ -14,8 +14,11 @@
 #include "core/utc_text.hpp"
 #include "daemon/incidents/incident_folder.hpp"
 #include "daemon/incidents/incident_list.hpp"
+#include "daemon/incidents/incident_picture.hpp"
 #include "daemon/incidents/left_ring.hpp"
+#include "daemon/incidents/recorded_scan.hpp"
 #include "daemon/incidents/segment_ring.hpp"
+#include "daemon/settings/settings.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -147,6 +150,28 @@ std::vector<IncidentEvent> events_of_draft(const fs::path& left) {
   }
 }
 
+/// The newest pose that is known with its scan, on the newest map. Why there is no picture; empty: there is one, or no
+/// pose was known.
+std::string drawn(const IncidentFolder& folder, const LeftRing& ring, const std::string& settings,
+                  const std::function<void(const TakeByteRecord&)>& records) {
+  const Incident& incident = folder.incident();
+  const auto time = ring.pose_time();
+  if (!time) return "";
+  try {
+    const auto map = ring.newest_map();
+    const PoseCovariance widest = PoseCovariance::Identity() * incident.deviation_m * incident.deviation_m;
+    replace_file(
+        folder.path() / kIncidentPicture,
+        incident_picture({.map = *map,
+                          .map_from_robot = *incident.map_from_robot,
+                          .covariance = widest,
+                          .scan = recorded_scan(parse_settings(settings, kIncidentSettings), *time, records)}));
+    return "";
+  } catch (const std::runtime_error& why) {
+    return std::string("without a picture: ") + why.what();
+  }
+}
+
 KeptEnd kept_as_new(const fs::path& parent, const fs::path& left, const LeftRing& ring, const IncidentEvent& end) {
   const auto start = ring.oldest_start();
   if (!start) return {ended_at(end.time) + "; what its ring holds does not replay: no beginning is whole", ""};
@@ -168,7 +193,8 @@ KeptEnd kept_as_new(const fs::path& parent, const fs::path& left, const LeftRing
                                                               .bauds = bauds.bauds(),
                                                               .log = ring.log(),
                                                               .records = records}};
-  const std::string lacks = incident.lacks.empty() ? "" : "; " + incident.lacks;
+  std::string lacks = incident.lacks.empty() ? "" : "; " + incident.lacks;
+  if (const std::string why = drawn(folder, ring, start->settings, records); !why.empty()) lacks += "; " + why;
   return {ended_at(end.time) + ": its last " + rounded_s(incident.from, end.time) + " are kept as incident " +
               folder.incident().name + lacks,
           folder.incident().name};

@@ -238,7 +238,8 @@ void IncidentKeeper::flush(Timestamp now) {
   if (!ring_ || ring_->is_empty()) return;
   (void)output_.attempt(now, [&] {
     const IncidentEvent none{IncidentKind::kDaemonEnded, now, ""};
-    write_newest(ring_->folder(), begun_incident(none, now, nullptr), log_.since(ring_->oldest().began));
+    const Timestamp measured = newest_ ? newest_->time : now;
+    write_newest(ring_->folder(), begun_incident(none, measured, nullptr), log_.since(ring_->oldest().began));
   });
 }
 

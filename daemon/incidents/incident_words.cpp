@@ -81,7 +81,7 @@ std::string kept_text(const Incident& incident) {
 
 /// The legend of daemon/incidents/incident_picture.
 std::string picture_text(const Incident& incident) {
-  if (!incident.map_from_robot || incident.events.front().kind == IncidentKind::kDaemonEnded) return "";
+  if (!incident.map_from_robot) return "";
   return std::string(kIncidentPicture) +
          " shows that moment: the map (black: obstacles, grey: unknown), the newest scan (green where a beam ends at "
          "an "

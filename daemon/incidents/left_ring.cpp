@@ -46,8 +46,8 @@ void write_run_facts(const fs::path& ring, const Settings& settings, const Occup
   write_grid(map, ring / kIncidentMap);
 }
 
-void write_newest(const fs::path& ring, const Incident& of_now, const std::string& log) {
-  replace_without_syncing(ring / kNewestFacts, json_text(of_now));
+void write_newest(const fs::path& ring, const Incident& newest, const std::string& log) {
+  replace_without_syncing(ring / kNewestFacts, json_text(newest));
   replace_without_syncing(ring / kIncidentLog, log);
 }
 
@@ -150,6 +150,22 @@ Incident LeftRing::newest(const Start& start) const {
   } catch (const std::runtime_error&) {  // the power went before it reached the disk
   }
   return facts;
+}
+
+std::optional<Timestamp> LeftRing::pose_time() const {
+  try {
+    const Incident newest = incident_of(text_of_file(folder_ / kNewestFacts));
+    return newest.map_from_robot ? std::optional{newest.from} : std::nullopt;
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
+std::shared_ptr<const OccupancyGrid> LeftRing::newest_map() const {
+  for (auto number = numbers_.rbegin(); number != numbers_.rend(); ++number) {
+    if (const auto start = start_at(*number)) return start->map;
+  }
+  return nullptr;
 }
 
 std::string LeftRing::log() const {

@@ -22,9 +22,9 @@ namespace deltamap::daemon {
 
 /// When its run begins. Throws std::runtime_error naming the file.
 void write_run_facts(const std::filesystem::path& ring, const Settings& settings, const OccupancyGrid& map);
-/// Now and then: what an incident of now would say, and its log. Each file is replaced whole, and not synced. Throws as
-/// above.
-void write_newest(const std::filesystem::path& ring, const Incident& of_now, const std::string& log);
+/// Now and then: what an incident that begins with the newest pose would say, and its log. Each file is replaced whole,
+/// and not synced. Throws as above.
+void write_newest(const std::filesystem::path& ring, const Incident& newest, const std::string& log);
 /// The first record of a segment's beginning: what an incident that begins there would say.
 [[nodiscard]] std::string facts_note(const Incident& incident);
 
@@ -55,6 +55,10 @@ class LeftRing {
 
   /// Pose and revision at the end; of `start` where that is not known.
   [[nodiscard]] Incident newest(const Start& start) const;
+  /// When that pose was measured; nothing: it is not known.
+  [[nodiscard]] std::optional<Timestamp> pose_time() const;
+  /// Of the newest beginning that is whole; null: there is none.
+  [[nodiscard]] std::shared_ptr<const OccupancyGrid> newest_map() const;
   /// Empty where there is none.
   [[nodiscard]] std::string log() const;
 

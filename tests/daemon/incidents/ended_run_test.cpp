@@ -10,6 +10,7 @@
 #include "daemon/incidents/segment_ring.hpp"
 #include "drivers/port/byte_log.hpp"
 #include "tests/support/daemon/incident_drive.hpp"
+#include "tests/support/daemon/incident_pixels.hpp"
 #include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
@@ -88,6 +89,12 @@ TEST_F(EndedRunTest, ItsLastMinutesAreAnIncidentThatReplays) {
             std::string::npos);
   EXPECT_NE(told().find("the daemon before ended without a word at "), std::string::npos) << told();
   EXPECT_NE(told().find("are kept as incident " + stored.incident.name), std::string::npos) << told();
+
+  const test::Pixels pixels = test::pixels_of(test::content_of(stored.folder / kIncidentPicture));
+  EXPECT_GT(pixels.count(test::incident_colours::kBlue), 50u);
+  EXPECT_GT(pixels.count(test::incident_colours::kGreen), 3 * (pixels.count(test::incident_colours::kOrange) + 1))
+      << "the scan of that pose";
+  EXPECT_NE(test::content_of(stored.folder / kIncidentWords).find("picture.png shows that moment"), std::string::npos);
 
   double farthest_m = 0.0;
   std::size_t compared = 0;

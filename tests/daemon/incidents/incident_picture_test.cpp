@@ -3,48 +3,20 @@
 #include "daemon/incidents/incident_picture.hpp"
 
 #include <gtest/gtest.h>
-#include <png.h>
 
-#include <algorithm>
-#include <array>
-#include <vector>
+#include <optional>
 
 #include "daemon/incidents/incident_list.hpp"
 #include "tests/support/daemon/incident_drive.hpp"
+#include "tests/support/daemon/incident_pixels.hpp"
 #include "tests/support/files/text_file.hpp"
 
 namespace deltamap::daemon {
 namespace {
 
-namespace fs = std::filesystem;
-using Colour = std::array<std::uint8_t, 3>;
-
-constexpr Colour kBlack{24, 26, 30};
-constexpr Colour kGreen{0, 158, 115};
-constexpr Colour kOrange{213, 94, 0};
-constexpr Colour kBlue{0, 60, 180};
-constexpr Colour kPurple{204, 121, 167};
-
-struct Pixels {
-  std::size_t side = 0;
-  std::vector<Colour> all;
-  [[nodiscard]] std::size_t count(const Colour& colour) const {
-    return static_cast<std::size_t>(std::count(all.begin(), all.end(), colour));
-  }
-};
-
-Pixels pixels_of(const std::string& png) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  EXPECT_NE(png_image_begin_read_from_memory(&image, png.data(), png.size()), 0) << image.message;
-  image.format = PNG_FORMAT_RGB;
-  std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(image));
-  EXPECT_NE(png_image_finish_read(&image, nullptr, bytes.data(), 0, nullptr), 0) << image.message;
-  EXPECT_EQ(image.width, image.height);
-  Pixels pixels{image.width, {}};
-  for (std::size_t i = 0; i + 2 < bytes.size(); i += 3) pixels.all.push_back({bytes[i], bytes[i + 1], bytes[i + 2]});
-  return pixels;
-}
+using namespace test::incident_colours;
+using test::Pixels;
+using test::pixels_of;
 
 /// A wall 3 m ahead of the robot, and nothing else.
 OccupancyGrid wall_ahead() {
