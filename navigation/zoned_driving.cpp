@@ -2,6 +2,7 @@
 #include "navigation/zoned_driving.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -10,17 +11,24 @@
 namespace deltamap::navigation {
 namespace {
 
-constexpr double kAsideRad = radians(20.0);  // a robot on an arc meets what does not lie straight ahead
+// A robot on an arc meets what does not lie straight ahead.
+constexpr std::array<double, 3> kAsideRad{0.0, radians(20.0), -radians(20.0)};
+
+Point2 ahead_of(const Pose2& map_from_robot, double ahead_m, double aside_rad) {
+  return map_from_robot * Point2{ahead_m * std::cos(aside_rad), ahead_m * std::sin(aside_rad)};
+}
 
 /// How far the zone lies ahead, to either side, too; 0 where the robot is in it; nothing beyond `within_m`.
 std::optional<double> way_to_m(const Zone& zone, const Pose2& map_from_robot, const ZonedDrivingParams& params) {
+  Polygon looked_at{map_from_robot.position()};
+  for (const double aside_rad : kAsideRad) looked_at.push_back(ahead_of(map_from_robot, params.within_m, aside_rad));
+  if (!bounding_box(zone.polygon).meets(bounding_box(looked_at))) return std::nullopt;
   if (contains(zone.polygon, map_from_robot.position())) return 0.0;
   const int steps = static_cast<int>(params.within_m / params.step_m);
   for (int step = 1; step <= steps; ++step) {
     const double ahead_m = step * params.step_m;
-    for (const double aside_rad : {0.0, kAsideRad, -kAsideRad}) {
-      const Point2 place{ahead_m * std::cos(aside_rad), ahead_m * std::sin(aside_rad)};
-      if (contains(zone.polygon, map_from_robot * place)) return ahead_m;
+    for (const double aside_rad : kAsideRad) {
+      if (contains(zone.polygon, ahead_of(map_from_robot, ahead_m, aside_rad))) return ahead_m;
     }
   }
   return std::nullopt;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 
 namespace deltamap::navigation {
 namespace {
@@ -57,6 +58,14 @@ TEST(ZonedDriving, ALimitHoldsInItsZoneAndJustBeforeIt) {
   EXPECT_DOUBLE_EQ(speed_limit_m_per_s({kSlow}, {0.7, 0.0, 0.0}), 0.2);
   EXPECT_DOUBLE_EQ(speed_limit_m_per_s({kSlow}, {2.9, 0.0, 0.0}), 0.2);
   EXPECT_TRUE(std::isinf(speed_limit_m_per_s({kSlow}, {0.7, 0.0, radians(180.0)}))) << "it drives away";
+}
+
+TEST(ZonedDriving, AZoneFarAwayCostsNoSearchAlongTheWay) {
+  const ZonedDrivingParams finely{.step_m = 1e-7};  // 240 million places ahead: seconds, where they are asked for
+  const std::clock_t began = std::clock();
+  for (const Pose2& robot : {Pose2{-9.5, 0.0, 0.0}, Pose2{0.5, 0.0, radians(180.0)}, Pose2{0.5, -9.0, 0.0}})
+    EXPECT_TRUE(std::isinf(speed_limit_m_per_s({kSlow}, robot, finely)));
+  EXPECT_LT(static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC, 0.2);
 }
 
 }  // namespace
