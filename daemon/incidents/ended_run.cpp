@@ -112,12 +112,13 @@ std::optional<std::size_t> records_before(const LeftRing& ring, const Kept& kept
   return found;
 }
 
-/// Rewrites the incident's recording with what the ring holds behind it. False where it does not go on there.
-bool is_completed(const StoredIncident& stored, const LeftRing& ring, const IncidentEvent& end) {
+/// Rewrites the incident's recording with what the ring holds behind it, and says when that ends: where the ring is
+/// damaged, the incident's own records may be newer. Nothing where it does not go on there.
+std::optional<Timestamp> completed(const StoredIncident& stored, const LeftRing& ring, IncidentEvent end) {
   const fs::path recording = stored.folder / kIncidentRecording;
   const Kept kept = kept_in(recording);
   const auto before = records_before(ring, kept, recording);
-  if (!before) return false;
+  if (!before) return std::nullopt;
   const fs::path draft = recording.string() + ".part";
   {
     ByteLogWriter writer{draft, kept.bauds};
@@ -132,11 +133,12 @@ bool is_completed(const StoredIncident& stored, const LeftRing& ring, const Inci
   move_into_place(draft, recording);
   if (const std::string log = ring.log(); !log.empty()) replace_file(stored.folder / kIncidentLog, log);
   Incident incident = stored.incident;
+  end.time = std::max(end.time, kept.end);
   incident.events.push_back(end);
-  incident.to = std::max(end.time, kept.end);
+  incident.to = end.time;
   incident.lacks = ring.lacks();
   write_page(stored.folder, incident);
-  return true;
+  return end.time;
 }
 
 /// What the daemon was about to keep of its own run. What it had begun to make of an earlier one's is made anew.
@@ -200,10 +202,19 @@ KeptEnd kept_as_new(const fs::path& parent, const fs::path& left, const LeftRing
           folder.incident().name};
 }
 
-bool has_end_at(const Incident& incident, Timestamp time) {
-  return std::any_of(incident.events.begin(), incident.events.end(), [&](const IncidentEvent& event) {
-    return event.kind == IncidentKind::kDaemonEnded && event.time == time;
-  });
+/// Whether the ring is worked into the incident already, whose own records may reach beyond it.
+bool has_end_of(const StoredIncident& stored, const LeftRing& ring) {
+  const Incident& incident = stored.incident;
+  const auto is_end = [](const IncidentEvent& event) { return event.kind == IncidentKind::kDaemonEnded; };
+  const auto end = std::find_if(incident.events.begin(), incident.events.end(), is_end);
+  if (end == incident.events.end() || end->time < *ring.last() || incident.from > *ring.last()) return false;
+  if (end->time == *ring.last()) return true;
+  try {
+    const fs::path recording = stored.folder / kIncidentRecording;
+    return records_before(ring, kept_in(recording), recording).has_value();
+  } catch (const std::runtime_error&) {  // it is unreadable by now: what the ring holds is kept
+    return false;
+  }
 }
 
 /// Incidents that some daemon was keeping, and this one is not.
@@ -220,19 +231,20 @@ KeptEnd kept_end(const fs::path& parent, const fs::path& left, const std::string
   if (!ring.last()) return {"the daemon before ended without a word, before anything of it was on disk", ""};
   const IncidentEvent end{IncidentKind::kDaemonEnded, *ring.last(), "the daemon ended without a word"};
   for (const StoredIncident& stored : incidents_in(parent)) {
-    if (has_end_at(stored.incident, end.time)) return {};  // this process, too, was killed behind that
+    if (has_end_of(stored, ring)) return {};  // this process, too, was killed behind that
   }
   for (const StoredIncident& stored : unfinished_in(parent, own)) {
+    std::optional<Timestamp> ended;
     try {
-      if (!is_completed(stored, ring, end)) continue;
+      ended = completed(stored, ring, end);
     } catch (const std::runtime_error&) {
       if (fs::is_regular_file(stored.folder / kIncidentRecording)) throw;  // the disk is full
-      continue;
     }
+    if (!ended) continue;
     const std::string lacks = ring.lacks().empty() ? "" : "; " + ring.lacks();
-    return {ended_at(end.time) + ": incident " + stored.incident.name + ", which it was keeping, has been completed" +
-                lacks,
-            stored.incident.name};
+    return {
+        ended_at(*ended) + ": incident " + stored.incident.name + ", which it was keeping, has been completed" + lacks,
+        stored.incident.name};
   }
   return kept_as_new(parent, left, ring, end);
 }

@@ -157,11 +157,22 @@ TEST_F(EndedRunTest, AnIncidentThatReachesBeyondTheRingIsCompleteAsItIs) {
   end_without_a_word();
   const fs::path newest = newest_segment();
   fs::resize_file(newest, fs::file_size(newest) - 3001);
+  const fs::path kept_aside = folder_.path() / "ring";
+  fs::copy(folder() / kRingFolder, kept_aside);
   start_and_stop();
   ASSERT_EQ(kept().size(), 1u) << told();
   ASSERT_EQ(kept().front().incident.events.size(), 2u);
   EXPECT_LT(seconds(ended_ - *kept().front().incident.to), 1.2);
-  EXPECT_GT(records_in(kept().front()).size(), 500u);
+  const auto records = records_in(kept().front());
+  EXPECT_GT(records.size(), 500u);
+  EXPECT_GE(kept().front().incident.events[1].time, records.back().stamp) << "no end before what it has";
+  EXPECT_EQ(kept().front().incident.events[1].time, *kept().front().incident.to);
+  // As if it had been killed again before the ring was gone.
+  fs::remove_all(folder() / kRingFolder);
+  fs::copy(kept_aside, folder() / kRingFolder);
+  start_and_stop();
+  ASSERT_EQ(kept().size(), 1u) << told();
+  EXPECT_EQ(kept().front().incident.events.size(), 2u) << "worked in once";
 }
 
 TEST_F(EndedRunTest, ATornLastBlockIsCutAndTold) {
