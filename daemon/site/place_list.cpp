@@ -4,7 +4,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstdio>
 #include <set>
 #include <stdexcept>
 
@@ -86,11 +88,29 @@ void require_utf8(std::string_view text, const std::string& file) {
   }
 }
 
-/// Any text, on one line.
-std::string quoted(const std::string& text) {
-  YAML::Emitter out;
-  out << YAML::DoubleQuoted << text;
-  return out.c_str();
+bool stands_as_it_is(char32_t code) {
+  const bool is_control = code < 0x20 || (code >= 0x7F && code <= 0xA0);
+  const bool is_noncharacter = (code & 0xFFFEu) == 0xFFFE || (code >= 0xFDD0 && code <= 0xFDEF);
+  return !is_control && !is_noncharacter && !unusual_blank(code) && code != U'"' && code != U'\\';
+}
+
+/// Any text, on one line. The library's own writer puts U+FFFD in the place of some characters (U+FFFF): an id that is
+/// written so is not the one that was asked for.
+std::string in_quotes(std::string_view text) {
+  std::string written = "\"";
+  for (std::size_t at = 0; at < text.size();) {
+    const auto character = character_at(text, at);
+    assert(character && "a place was read from UTF-8");
+    if (stands_as_it_is(character->code)) {
+      written += text.substr(at, character->bytes);
+    } else {
+      char escape[16];
+      (void)std::snprintf(escape, sizeof escape, "\\U%08X", static_cast<unsigned>(character->code));
+      written += escape;
+    }
+    at += character->bytes;
+  }
+  return written + "\"";
 }
 
 std::string in_mm(double length_m) { return shortest_text(std::round(1e3 * length_m) / 1e3 + 0.0); }
@@ -120,10 +140,10 @@ std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& fil
 std::string places_as_yaml(const std::vector<ListedPlace>& places, const PlaceKeys& keys) {
   std::string yaml = keys.list + ":\n";
   for (const ListedPlace& place : places) {
-    yaml += "  - " + keys.id + ": " + quoted(place.id) + "\n";
+    yaml += "  - " + keys.id + ": " + in_quotes(place.id) + "\n";
     for (const std::string& key : keys.words) {
       if (const auto word = place.words.find(key); word != place.words.end())
-        yaml += "    " + key + ": " + quoted(word->second) + "\n";
+        yaml += "    " + key + ": " + in_quotes(word->second) + "\n";
     }
     yaml += "    " + keys.polygon + ": [";
     for (const Point2& corner : place.polygon) {

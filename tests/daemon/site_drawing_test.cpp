@@ -161,6 +161,18 @@ TEST_F(SiteDrawingTest, AZoneOverTheRobotIsTakenAndWarnedOf) {
   });
 }
 
+TEST_F(SiteDrawingTest, AnIdOfAnyCharactersIsDrawnOnWithoutAReload) {
+  with_run([&] {
+    const std::string odd = "\xEF\xBF\xBF";  // U+FFFF
+    Json zone = Json::parse(kBoxZone);
+    zone["zoneId"] = odd;
+    EXPECT_EQ(drawn(PlaceKind::kZone, zone.dump())["ok"], true);
+    const Json reply = drawn(PlaceKind::kZone, "", odd);
+    EXPECT_EQ(reply["ok"], true) << reply << ": what it has written is what is in force";
+  });
+  EXPECT_EQ(site().zones.size(), 1u);
+}
+
 TEST_F(SiteDrawingTest, WhereNoFileIsNamedTheKeyIsTold) {
   settings_.bays.file = "";
   with_run([&] {

@@ -19,5 +19,18 @@ TEST(PlaceList, WhatIsWrittenReadsBackWhateverItsWords) {
   EXPECT_NEAR(back[0].polygon[1].x(), 1.2345, 0.0006);
 }
 
+TEST(PlaceList, EveryCharacterOfAnIdIsWrittenAsItIs) {
+  // Control characters, blanks that are none, characters that are none (U+FFFF, U+FDD0, U+10FFFE), and beyond 16 bits.
+  for (const std::string id : {"a\tb\r\n\x7F\xC2\x85", "\xC2\xA0\xE2\x80\xA8\xEF\xBB\xBF", "\xEF\xBF\xBF",
+                               "\xEF\xB7\x90\xF4\x8F\xBF\xBE", "\\ \" ' \xF0\x9F\x93\xA6 T\xC3\xBCr", "\xEF\xBF\xBD"}) {
+    const std::string yaml = places_as_yaml({{.id = id, .polygon = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}}}, kKeys);
+    const auto back = places_in(yaml, "zones.yaml", kKeys);
+    ASSERT_EQ(back.size(), 1u) << yaml;
+    EXPECT_EQ(back[0].id, id) << yaml;
+  }
+  EXPECT_NE(places_as_yaml({{.id = "T\xC3\xBCr", .polygon = {{0.0, 0.0}}}}, kKeys).find("\"T\xC3\xBCr\""),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace deltamap::daemon
