@@ -22,6 +22,7 @@
 #include "daemon/settings/start_error.hpp"
 #include "daemon/site/bays_file.hpp"
 #include "daemon/site/zones_file.hpp"
+#include "daemon/site_reload.hpp"
 #include "daemon/sockets/listening_socket.hpp"
 #include "daemon/start_banner.hpp"
 #include "daemon/steps/localization_step.hpp"
@@ -256,8 +257,9 @@ Finding bays_finding(const Settings& settings, const GridGeometry& map) {
 Finding zones_finding(const Settings& settings, const GridGeometry& map) {
   try {
     const Zones zones = zones_on(map, settings.zones.file);
-    const auto over =
-        settings.initial_pose ? zones_over(settings.initial_pose->position(), zones) : std::vector<std::string>{};
+    const auto over = settings.initial_pose
+                          ? zones_over(settings.initial_pose->position(), zones, settings.navigation.safety)
+                          : std::vector<std::string>{};
     if (!over.empty()) return {Level::kWarning, "zones", settings.zones.file + ": " + over.front()};
     return {Level::kOk, "zones", settings.zones.file + ": " + counted(zones.size(), "zone")};
   } catch (const std::runtime_error& error) {

@@ -116,7 +116,7 @@ control::CommandOutcome draw_on_site(const Settings& settings, const GridGeometr
   if (!in_force.sites.try_send(SharedSite{wanted}))
     return refused(file + " is written, and not in force: the daemon is busy, say `deltamap ctl reload`");
   in_force.newest.set(wanted);
-  for (const std::string& line : warnings_of(*wanted, in_force.telemetry)) {
+  for (const std::string& line : warnings_of(*wanted, settings, in_force.telemetry)) {
     outcome.message += "; " + line;
     outcome.doubt = true;
   }

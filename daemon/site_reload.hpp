@@ -16,8 +16,13 @@
 
 namespace deltamap::daemon {
 
-/// Those of the settings, which `start` has from then on. Warns of zones in which the robot must not be and begins.
-/// Throws std::runtime_error: one line that names file and place.
+/// A line each for blocked zones in which the robot stands: it may leave, and never comes back. And for those whose
+/// border is within the reach of its hull: what it still can do there.
+[[nodiscard]] std::vector<std::string> zones_over(const Point2& robot_in_map, const Zones& zones,
+                                                  const navigation::SafetyParams& safety);
+
+/// Those of the settings, which `start` has from then on. Warns as zones_over() of where the robot
+/// begins. Throws std::runtime_error: one line that names file and place.
 [[nodiscard]] SharedSite begun_site(StartMap& start, const Settings& settings,
                                     const std::function<void(const std::string&)>& warn);
 
@@ -26,8 +31,9 @@ struct SiteInForce {
   Channel<SharedSite>& sites;  ///< to those who go by it
   NewestBoard<Site>& newest;
 };
-/// A line each for zones in which the robot must not be and stands, where it knows that.
-[[nodiscard]] std::vector<std::string> warnings_of(const Site& site, const Telemetry& telemetry);
+/// As zones_over(), where the robot knows its place.
+[[nodiscard]] std::vector<std::string> warnings_of(const Site& site, const Settings& settings,
+                                                   const Telemetry& telemetry);
 
 /// Tells in `outcome` what was taken, or why nothing was. Never by two threads at once.
 void reload_site(const Settings& settings, const GridGeometry& map, const SiteInForce& in_force,

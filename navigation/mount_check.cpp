@@ -17,11 +17,11 @@ constexpr double kMostWayM = 1.0;
 constexpr double kMostWayRad = 0.8;
 constexpr double kMostWayS = 6.0;
 
-constexpr int kFewestEnds = 15;       // that would look different, or a way shows nothing
-constexpr double kShowsWay = 0.6;     // share of these that show it,
-constexpr double kClearlyMore = 0.3;  // and so much more than by the other mount
-constexpr double kSure = 1.5;         // sum of what ways show more by one mount than by the other: two clear ones,
-constexpr double kMost = 6.0;         // and no more is remembered
+constexpr int kFewestEnds = 15;         // that would look different, or a way shows nothing
+constexpr double kShowsWay = 0.6;       // share of these that show it,
+constexpr double kClearlyBetter = 0.3;  // and so much more than by the other mount
+constexpr double kSure = 1.5;           // sum of what ways show more by one mount than by the other: two clear ones,
+constexpr double kMost = 6.0;           // and no more is remembered
 
 Scan mounted(Scan scan, OtherMount mount) {
   switch (mount) {
@@ -74,7 +74,7 @@ void MountCheck::compare(const Scan& scan, const Pose2& robot_before_from_after)
     if (is_refuted && *by_settings >= kShowsWay) continue;
     const auto mount = static_cast<OtherMount>(i);
     const auto other = share_as_told(mounted(reference_->scan, mount), mounted(scan, mount), robot_before_from_after);
-    if (!other || std::abs(*other - *by_settings) < kClearlyMore) continue;
+    if (!other || std::abs(*other - *by_settings) < kClearlyBetter) continue;
     if (std::max(*other, *by_settings) < kShowsWay) continue;
     evidence_[i] = std::clamp(evidence_[i] + *other - *by_settings, -kMost, kMost);
   }

@@ -111,14 +111,4 @@ std::vector<ListedPlace> places_of(const Zones& zones) {
   return places;
 }
 
-std::vector<std::string> zones_over(const Point2& robot_in_map, const Zones& zones) {
-  std::vector<std::string> lines;
-  for (const Zone& zone : zones) {
-    if (zone.kind != ZoneKind::kBlocked || !contains(zone.polygon, robot_in_map)) continue;
-    lines.push_back("zone '" + zone.id +
-                    "' is BLOCKED and lies over the robot's own place: it may leave, and does not come back");
-  }
-  return lines;
-}
-
 }  // namespace deltamap::daemon

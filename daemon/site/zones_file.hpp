@@ -36,7 +36,4 @@ namespace deltamap::daemon {
 [[nodiscard]] Zones zones_of_places(const std::vector<ListedPlace>& places, const std::string& name,
                                     const GridGeometry& map);
 
-/// A line each for those in which the robot must not be and stands: it may leave, and never comes back.
-[[nodiscard]] std::vector<std::string> zones_over(const Point2& robot_in_map, const Zones& zones);
-
 }  // namespace deltamap::daemon

@@ -62,5 +62,23 @@ TEST_F(SiteReloadTest, WhatCannotBeIsRefusedAndTheOldZonesStay) {
   });
 }
 
+TEST(ZonesOver, TellOfBlockedZonesAroundTheRobotAndWhatItCanDoThere) {
+  const navigation::SafetyParams safety;
+  const Zones zones{{.id = "X", .kind = ZoneKind::kBlocked, .polygon = {{1, 1}, {3, 1}, {3, 3}, {1, 3}}},
+                    {.id = "Y", .kind = ZoneKind::kIgnore, .polygon = {{0, 0}, {9, 0}, {9, 9}}},
+                    {.id = "Z", .kind = ZoneKind::kBlocked, .polygon = {{3.4, 1}, {5, 1}, {5, 3}, {3.4, 3}}}};
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(zones_over({0.6, 2.0}, zones, safety), Lines{});
+  EXPECT_EQ(zones_over({2.0, 2.0}, zones, safety),
+            Lines{"zone 'X' is BLOCKED and lies over the robot's own place: it may leave, and does not come back"});
+  EXPECT_EQ(
+      zones_over({0.8, 2.0}, zones, safety),
+      Lines{"the border of blocked zone 'X' is within 0.34 m of the robot's middle, where its hull and its margin "
+            "reach: it turns, and drives straight away from the border alone"});
+  EXPECT_EQ(zones_over({3.2, 2.0}, zones, safety),
+            Lines{"the border of blocked zone 'X', 'Z' is within 0.34 m of the robot's middle, where its hull and its "
+                  "margin reach: it turns, and no way ahead is left: draw the border farther away"});
+}
+
 }  // namespace
 }  // namespace deltamap::daemon

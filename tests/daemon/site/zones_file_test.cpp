@@ -83,15 +83,5 @@ TEST_F(ZonesFile, SaysInOneLineWhatCannotBe) {
             "line 2: zone 'X' lies off the map: its corner 33, 3; the map reaches from 0, 0 to 20, 15, in metres");
 }
 
-TEST_F(ZonesFile, TellsOfBlockedZonesOverTheRobot) {
-  const Zones zones = read(
-      "zones:\n  - {zoneId: X, zoneType: BLOCKED, vertices: [[1, 1], [3, 1], [3, 3]]}\n"
-      "  - {zoneId: Y, zoneType: IGNORE, vertices: [[1, 1], [3, 1], [3, 3]]}\n");
-  EXPECT_TRUE(zones_over({1.0, 2.9}, zones).empty());
-  ASSERT_EQ(zones_over({2.5, 1.5}, zones).size(), 1u);
-  EXPECT_EQ(zones_over({2.5, 1.5}, zones)[0],
-            "zone 'X' is BLOCKED and lies over the robot's own place: it may leave, and does not come back");
-}
-
 }  // namespace
 }  // namespace deltamap::daemon
