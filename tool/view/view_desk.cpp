@@ -12,7 +12,6 @@
 #include "daemon/live/pose_line.hpp"
 #include "drivers/port/port_clock.hpp"
 #include "localization/particles/particle_sample.hpp"
-#include "tool/view/run_things.hpp"
 
 namespace deltamap::tool {
 namespace {
@@ -48,6 +47,7 @@ ViewDesk::ViewDesk(ViewedRun run, std::uint16_t port)
       board_{run_.map, run_.revision, kWholeRun},
       history_{run_.store},
       moments_{std::filesystem::temp_directory_path()},
+      things_{run_.things},
       server_{{.port = port,
                .guard = {},
                .answer = [this](const Request& request) { return answer(request); },
@@ -129,10 +129,10 @@ Answer ViewDesk::moment(const std::string& query) const {
   return {.type = "application/octet-stream", .body = *std::move(messages)};
 }
 
-Answer ViewDesk::things(const std::string& query) const {
+Answer ViewDesk::things(const std::string& query) {
   const auto time = time_in(query);
   if (!time) return {.status = 400, .body = "/api/things?time=T needs a time, Unix s\n"};
-  return {.type = kJson, .body = things_at(run_.things, *time + kRounding) + "\n"};
+  return {.type = kJson, .body = things_.at(*time + kRounding) + "\n"};
 }
 
 Answer ViewDesk::revision(const std::string& path) {

@@ -18,6 +18,7 @@
 #include "daemon/settings/settings.hpp"
 #include "tool/view/moment_file.hpp"
 #include "tool/view/run_events.hpp"
+#include "tool/view/run_things.hpp"
 
 namespace deltamap::tool {
 
@@ -60,7 +61,7 @@ class ViewDesk {
   void keep_lasting(Timestamp now, const mapping::StoreScan& awareness);
   [[nodiscard]] daemon::dashboard::Answer answer(const daemon::dashboard::Request& request);
   [[nodiscard]] daemon::dashboard::Answer moment(const std::string& query) const;
-  [[nodiscard]] daemon::dashboard::Answer things(const std::string& query) const;
+  [[nodiscard]] daemon::dashboard::Answer things(const std::string& query);
   [[nodiscard]] daemon::dashboard::Answer revision(const std::string& path);
   [[nodiscard]] std::string run_message() const;
   void refresh();
@@ -70,6 +71,7 @@ class ViewDesk {
   daemon::PageHistory history_;
   MomentFile moments_;
   RunEvents events_;
+  RunThings things_;
   std::shared_ptr<const TransientObstacles> transients_;  // that the newest moment shows, as the next
   mapping::StoredScans stored_;
   std::optional<Timestamp> lasting_kept_;

@@ -13,6 +13,14 @@ namespace {
 
 using nlohmann::json;
 
+std::string kinds_at(RunThings& things, double time_s) {
+  std::string kinds;
+  const json told = json::parse(things.at(timestamp_from_ns(0) + duration_from_seconds(time_s)));
+  for (const json& thing : told["things"])
+    kinds += thing["thing"].dump() + " " + thing["kind"].get<std::string>() + ";";
+  return kinds;
+}
+
 TEST(RunThings, AreTheNewestLineOfEachUpToAMoment) {
   const ScratchFolder folder;
   const auto file = folder.path() / "things.jsonl";
@@ -21,21 +29,37 @@ TEST(RunThings, AreTheNewestLineOfEachUpToAMoment) {
                       << "no line of it\n"
                       << R"({"time":102.5,"thing":2,"kind":"moved"})" << '\n'
                       << R"({"time":103.0,"thing":3,"ki)";
-  const auto kinds_at = [&](double time_s) {
-    std::string kinds;
-    const json told = json::parse(things_at(file, timestamp_from_ns(0) + duration_from_seconds(time_s)));
-    for (const json& thing : told["things"])
-      kinds += thing["thing"].dump() + " " + thing["kind"].get<std::string>() + ";";
-    return kinds;
-  };
-  EXPECT_EQ(kinds_at(99.0), "");
-  EXPECT_EQ(kinds_at(101.0), "1 gone;2 appeared;");
-  EXPECT_EQ(kinds_at(200.0), "1 gone;2 moved;");
-  EXPECT_EQ(json::parse(things_at(file, timestamp_from_ns(0)))["unread"], 1) << "not the one that is being written";
+  RunThings things{file};
+  EXPECT_EQ(kinds_at(things, 99.0), "");
+  EXPECT_EQ(kinds_at(things, 101.0), "1 gone;2 appeared;");
+  EXPECT_EQ(kinds_at(things, 200.0), "1 gone;2 moved;");
+  EXPECT_EQ(json::parse(things.at({}))["unread"], 1) << "not the one that is being written";
+  std::ofstream{file, std::ios::app} << R"(nd":"gone"})" << '\n';
+  EXPECT_EQ(kinds_at(things, 200.0), "1 gone;2 moved;3 gone;") << "by now it is written";
 }
 
 TEST(RunThings, AreNoneWithoutAFile) {
-  EXPECT_TRUE(json::parse(things_at("/no/such/things.jsonl", timestamp_from_ns(0)))["things"].empty());
+  RunThings things{"/no/such/things.jsonl"};
+  EXPECT_TRUE(json::parse(things.at({}))["things"].empty());
+}
+
+TEST(RunThings, ReadOfALongFileOnlyWhatIsNewAndWhatIsShown) {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "things.jsonl";
+  constexpr int kLines = 2000;
+  {
+    std::ofstream out{file};
+    for (int i = 0; i < kLines; ++i)
+      out << R"({"time":)" << 100 + i << R"(,"thing":)" << i % 3 << R"(,"kind":"of )" << i << "\"}\n";
+  }
+  RunThings things{file};
+  EXPECT_EQ(kinds_at(things, 99.0 + kLines), "0 of 1998;1 of 1999;2 of 1997;");
+  // In place, as long as before: lines that have been read, and are not shown, are read no more.
+  std::fstream{file, std::ios::in | std::ios::out} << "no line";
+  EXPECT_EQ(kinds_at(things, 99.0 + kLines), "0 of 1998;1 of 1999;2 of 1997;");
+  EXPECT_EQ(json::parse(things.at({}))["unread"], 0);
+  std::ofstream{file} << R"({"time":50,"thing":7,"kind":"another run's"})" << '\n';
+  EXPECT_EQ(kinds_at(things, 200.0), "7 another run's;") << "a shorter file is another one";
 }
 
 }  // namespace
