@@ -23,7 +23,7 @@ BIN = pathlib.Path(os.environ.get("DELTAMAP_BIN", ROOT / "build/release/bin"))
 KEYS = {"localization.field.hit_deviation_m": ("0.6", 0.03, 0.9), "localization.field.random_share": ("0.2", 0.02, 0.2),
         "localization.motion.turn_per_turn": ("1.5", 0.02, 2.0), "laser.range_deviation_m": ("0.25", 0.008, 0.3)}
 IDLE = {"localization.global.converged_after_m": (1.0, 8.0)}  # of a search that this drive, whose start is given, never makes
-BY, BUDGET, SEARCHES, SECONDS, AT_ONCE, TEST_SEEDS = "error_p95_m", 200, 10, 45.0, 100, 8
+BY, BUDGET, SEARCHES, RANDOM, SECONDS, AT_ONCE, TEST_SEEDS = "error_p95_m", 200, 10, 2000, 45.0, 100, 8
 START = "2.5,2.5,0"
 
 
@@ -69,7 +69,7 @@ def verdict_of(told):
 
 
 def measure(seed, quick):
-    searches, count = (2, 20) if quick else (SEARCHES, int(os.environ.get("DELTAMAP_RANDOM", 1000)))
+    searches, count = (2, 20) if quick else (SEARCHES, RANDOM)
     dice = random.Random(seed)
     with tempfile.TemporaryDirectory(prefix="deltamap-searching-") as place:
         tuned = Tuned(place, seed)
