@@ -3,6 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/statistics/summary.hpp"
+#include "experiments/pooled_runs.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -10,6 +15,34 @@ namespace {
 std::optional<Target> target_of(const std::optional<double>& limit, Better better) {
   if (!limit) return std::nullopt;
   return better == Better::kLess ? Target{.most = limit} : Target{.least = limit};
+}
+
+std::vector<double> values_of(const std::vector<const Outcome*>& runs, std::string_view number) {
+  std::vector<double> values;
+  values.reserve(runs.size());
+  for (const Outcome* run : runs) values.push_back(run->number(number));
+  return values;
+}
+
+double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+double ratio_of(const std::vector<const Outcome*>& runs, const Ratio& ratio) {
+  const double whole = sum_of(values_of(runs, ratio.whole));
+  return whole > 0.0 ? ratio.scale * sum_of(values_of(runs, ratio.part)) / whole
+                     : std::numeric_limits<double>::quiet_NaN();
+}
+
+Series in_order(const std::string& name, std::vector<double> values) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  std::sort(values.begin(), values.end());
+  Series series{name, {}};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    series.points.emplace_back(static_cast<double>(i + 1) / static_cast<double>(values.size()), values[i]);
+  return series;
+}
+
+Chart chart_of(const std::string& what, std::vector<Series> series) {
+  return {what + ", runs in order", "share of the runs", what, std::move(series)};
 }
 
 }  // namespace
@@ -48,16 +81,48 @@ Figure count_of_seeds(const std::string& name, const std::vector<Outcome>& outco
   return {name, static_cast<double>(found), "", target, "", Certainty{.runs = outcomes.size()}};
 }
 
+Figure sum_of_runs(const std::string& name, const std::vector<const Outcome*>& runs, const std::string& number,
+                   const std::optional<Target>& target, const std::string& unit) {
+  return {name, sum_of(values_of(runs, number)), unit, target, "", Certainty{.runs = runs.size()}};
+}
+
+Figure ratio_of_runs(const std::string& name, const std::vector<const Outcome*>& runs, const Ratio& ratio,
+                     const std::optional<Target>& target, const std::string& unit) {
+  const auto of_drawn = [&](const std::vector<std::size_t>& drawn) {
+    std::vector<const Outcome*> chosen;
+    chosen.reserve(drawn.size());
+    for (const std::size_t run : drawn) chosen.push_back(runs[run]);
+    return std::vector<double>{ratio_of(chosen, ratio)};
+  };
+  return {name, ratio_of(runs, ratio), unit, target, "", certainties_of_runs(runs.size(), of_drawn).front()};
+}
+
+Figure mean_of_runs(const std::string& name, const std::vector<const Outcome*>& runs, const std::string& number,
+                    const std::optional<Target>& target, const std::string& unit) {
+  const std::vector<double> values = values_of(runs, number);
+  return {name, mean_of(values), unit, target, "", certainty_of_mean(values)};
+}
+
+Figure most_of_runs(const std::string& name, const std::vector<const Outcome*>& runs, const std::string& number,
+                    const std::optional<Target>& target, const std::string& unit) {
+  const std::vector<double> values = values_of(runs, number);
+  return {name, quantile(values, 1.0), unit, target, "", certainty_of_extreme(values)};
+}
+
+Chart ratios_in_order(const std::string& what, const std::vector<std::pair<std::string, Ratio>>& ratios,
+                      const std::vector<const Outcome*>& runs) {
+  std::vector<Series> series;
+  for (const auto& [name, ratio] : ratios) {
+    std::vector<double> values;
+    values.reserve(runs.size());
+    for (const Outcome* run : runs) values.push_back(ratio_of({run}, ratio));
+    series.push_back(in_order(name, std::move(values)));
+  }
+  return chart_of(what, std::move(series));
+}
+
 Chart chart_in_order(const std::string& what, const std::string& number, const std::vector<Outcome>& outcomes) {
-  std::vector<double> values;
-  values.reserve(outcomes.size());
-  for (const Outcome& outcome : outcomes) values.push_back(outcome.number(number));
-  std::erase_if(values, [](double value) { return std::isnan(value); });
-  std::sort(values.begin(), values.end());
-  Series series{number, {}};
-  for (std::size_t i = 0; i < values.size(); ++i)
-    series.points.emplace_back(static_cast<double>(i + 1) / static_cast<double>(values.size()), values[i]);
-  return {what + ", seeds in order", "share of the seeds", what, {series}};
+  return chart_of(what, {in_order(number, values_of(runs_with(outcomes, {}), number))});
 }
 
 }  // namespace deltamap::experiments

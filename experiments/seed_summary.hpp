@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a figure is over many seeds: its median, what nine of ten reach, and the worst.
+// What a figure is over many seeds: its median, what nine of ten reach, and the worst; or a sum, a ratio, a mean and
+// the most of all runs together.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "experiments/experiment.hpp"
@@ -41,6 +44,30 @@ struct SpreadAsked {
                                     const std::function<bool(const Outcome&)>& holds,
                                     const std::optional<Target>& target = {});
 
+/// One number to another: how often of how often, so much an hour.
+struct Ratio {
+  std::string_view part;  ///< names of numbers, literals
+  std::string_view whole;
+  double scale = 1.0;
+};
+
+/// Figures of all runs together, each with their number. A sum and the most have no interval.
+[[nodiscard]] Figure sum_of_runs(const std::string& name, const std::vector<const Outcome*>& runs,
+                                 const std::string& number, const std::optional<Target>& target = {},
+                                 const std::string& unit = "");
+/// Of the sums over the runs, not the mean of their ratios; NaN where the whole is 0.
+[[nodiscard]] Figure ratio_of_runs(const std::string& name, const std::vector<const Outcome*>& runs, const Ratio& ratio,
+                                   const std::optional<Target>& target = {}, const std::string& unit = "");
+[[nodiscard]] Figure mean_of_runs(const std::string& name, const std::vector<const Outcome*>& runs,
+                                  const std::string& number, const std::optional<Target>& target = {},
+                                  const std::string& unit = "");
+[[nodiscard]] Figure most_of_runs(const std::string& name, const std::vector<const Outcome*>& runs,
+                                  const std::string& number, const std::optional<Target>& target = {},
+                                  const std::string& unit = "");
+
+/// Each ratio of all runs in order of size, under its name; runs whose whole is 0 are left out.
+[[nodiscard]] Chart ratios_in_order(const std::string& what, const std::vector<std::pair<std::string, Ratio>>& ratios,
+                                    const std::vector<const Outcome*>& runs);
 /// The values of all runs in order of size: how long the tail is.
 [[nodiscard]] Chart chart_in_order(const std::string& what, const std::string& number,
                                    const std::vector<Outcome>& outcomes);

@@ -8,7 +8,9 @@
 
 #include "experiments/closed_loop/incident_trial.hpp"
 #include "experiments/drive/first_map.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
+#include "experiments/seed_summary.hpp"
 
 namespace deltamap::experiments {
 namespace {
@@ -109,21 +111,17 @@ TextTable table_of_causes(const std::vector<Outcome>& outcomes) {
 }
 
 Report report_of_incidents(const std::vector<Outcome>& outcomes) {
-  const double losses = sum(outcomes, "losses");
+  const std::vector<const Outcome*> all = runs_with(outcomes, {});
   double least_before_s = kYoungS;
-  double largest_mb = 0.0;
-  for (const Outcome& outcome : outcomes) {
-    least_before_s = std::min(least_before_s, outcome.number("least_before_s"));
-    largest_mb = std::max(largest_mb, outcome.number("largest_mb_on_disk"));
-  }
-  const Certainty runs{.runs = outcomes.size()};
+  for (const Outcome& outcome : outcomes) least_before_s = std::min(least_before_s, outcome.number("least_before_s"));
   Report report;
   report.figures = {
-      {"losses that a replay meets within 2 s", losses > 0.0 ? sum(outcomes, "met_within_2_s") / losses : 0.0, "",
-       Target{.least = 0.95}, "", runs},
-      {"losses", losses, "", {}, "", runs},
-      {"kept before the first event, least", least_before_s, "s", Target{.least = 120.0}, "ros2_medkit: 5", runs},
-      {"largest incident", largest_mb, "MB", {}, "", runs}};
+      ratio_of_runs("losses that a replay meets within 2 s", all, {"met_within_2_s", "losses"}, Target{.least = 0.95}),
+      sum_of_runs("losses", all, "losses"),
+      {"kept before the first event, least", least_before_s, "s", Target{.least = 120.0}, "ros2_medkit: 5",
+       Certainty{.runs = outcomes.size()}},
+      most_of_runs("largest incident", all, "largest_mb_on_disk", {}, "MB")};
+  report.charts.push_back(chart_in_order("largest incident of a drive, MB", "largest_mb_on_disk", outcomes));
   report.tables.push_back(table_of_causes(outcomes));
   return report;
 }

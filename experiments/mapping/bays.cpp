@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "daemon/replay/sequential_run.hpp"
 #include "daemon/telemetry/stage.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
+#include "experiments/seed_summary.hpp"
 #include "experiments/watch/bay_yard.hpp"
 #include "mapping/bays/bays.hpp"
 #include "simulation/movers/person.hpp"
@@ -295,25 +296,6 @@ std::vector<Run> bays_runs(const Options& options) {
   return runs;
 }
 
-std::vector<const Outcome*> of_part(const std::vector<Outcome>& outcomes, const std::string& part) {
-  std::vector<const Outcome*> of_it;
-  for (const Outcome& outcome : outcomes) {
-    if (outcome.label("part") == part) of_it.push_back(&outcome);
-  }
-  return of_it;
-}
-
-double bays_sum(const std::vector<const Outcome*>& outcomes, const char* number) {
-  double sum = 0.0;
-  for (const Outcome* outcome : outcomes) sum += outcome->number(number);
-  return sum;
-}
-
-double bays_share(const std::vector<const Outcome*>& outcomes, const char* part, const char* whole) {
-  const double all = bays_sum(outcomes, whole);
-  return all > 0.0 ? bays_sum(outcomes, part) / all : std::numeric_limits<double>::quiet_NaN();
-}
-
 template <std::size_t kColumns>
 TextTable table_of_part(const std::string& title, const std::vector<const Outcome*>& outcomes,
                         const std::array<const char*, kColumns>& columns) {
@@ -327,32 +309,42 @@ TextTable table_of_part(const std::string& title, const std::vector<const Outcom
   return table;
 }
 
+void add_seen(Report& report, const std::vector<const Outcome*>& seen) {
+  constexpr Ratio soon{"right_3s", "seen_3s"};
+  constexpr Ratio surely{"right_10s", "seen_10s"};
+  const std::vector<Figure> figures{
+      sum_of_runs("loads that were in view for 3 s after they had changed", seen, "seen_3s"),
+      ratio_of_runs("state right after 3 s of view", seen, soon, Target{.least = 0.97}),
+      ratio_of_runs("precision after 10 s of view", seen, {"right_10s", "told_10s"}, Target{.least = 0.99}),
+      ratio_of_runs("recall after 10 s of view", seen, surely, Target{.least = 0.99}),
+      ratio_of_runs("states, each second of each bay, that were not so when they say they were seen", seen,
+                    {"not_so_when_seen", "states"}, Target{.most = 0.0}),
+      sum_of_runs("states of bays at which nobody has looked", seen, "never_looked", Target{.most = 0.0})};
+  report.figures.insert(report.figures.end(), figures.begin(), figures.end());
+  report.charts.push_back(
+      ratios_in_order("states that are right, share", {{"after 3 s of view", soon}, {"after 10 s", surely}}, seen));
+  report.tables.push_back(table_of_part(
+      "Loads that come and go", seen,
+      std::array{"seen_3s", "right_3s", "seen_10s", "told_10s", "right_10s", "states", "not_so_when_seen"}));
+}
+
+void add_people(Report& report, const std::vector<const Outcome*>& people) {
+  constexpr Ratio flips{"flips", "bay_hours", 3000.0};
+  const std::vector<Figure> figures{sum_of_runs("bay-hours among ten people", people, "bay_hours"),
+                                    sum_of_runs("of those in view", people, "in_view_hours"),
+                                    ratio_of_runs("false flips in 3000 bay-hours", people, flips, Target{.most = 3.0}),
+                                    sum_of_runs("first states that were wrong", people, "wrong_first"),
+                                    mean_of_runs("processor a scan, mean", people, "scan_cpu_ms", {}, "ms")};
+  report.figures.insert(report.figures.end(), figures.begin(), figures.end());
+  report.charts.push_back(ratios_in_order("false flips in 3000 bay-hours", {{"flips", flips}}, people));
+  report.tables.push_back(
+      table_of_part("Ten people", people, std::array{"bay_hours", "in_view_hours", "flips", "wrong_first"}));
+}
+
 Report bays_report(const std::vector<Outcome>& outcomes) {
   Report report;
-  const auto add = [&](const char* name, double value, std::optional<Target> target, const char* unit = "") {
-    report.figures.push_back({name, value, unit, target});
-  };
-  if (const auto seen = of_part(outcomes, "seen"); !seen.empty()) {
-    add("loads that were in view for 3 s after they had changed", bays_sum(seen, "seen_3s"), {});
-    add("state right after 3 s of view", bays_share(seen, "right_3s", "seen_3s"), Target{.least = 0.97});
-    add("precision after 10 s of view", bays_share(seen, "right_10s", "told_10s"), Target{.least = 0.99});
-    add("recall after 10 s of view", bays_share(seen, "right_10s", "seen_10s"), Target{.least = 0.99});
-    add("states, each second of each bay, that were not so when they say they were seen",
-        bays_share(seen, "not_so_when_seen", "states"), Target{.most = 0.0});
-    add("states of bays at which nobody has looked", bays_sum(seen, "never_looked"), Target{.most = 0.0});
-    report.tables.push_back(table_of_part(
-        "Loads that come and go", seen,
-        std::array{"seen_3s", "right_3s", "seen_10s", "told_10s", "right_10s", "states", "not_so_when_seen"}));
-  }
-  if (const auto people = of_part(outcomes, "people"); !people.empty()) {
-    add("bay-hours among ten people", bays_sum(people, "bay_hours"), {});
-    add("of those in view", bays_sum(people, "in_view_hours"), {});
-    add("false flips in 3000 bay-hours", 3000.0 * bays_share(people, "flips", "bay_hours"), Target{.most = 3.0});
-    add("first states that were wrong", bays_sum(people, "wrong_first"), {});
-    add("processor a scan, mean", bays_sum(people, "scan_cpu_ms") / static_cast<double>(people.size()), {}, "ms");
-    report.tables.push_back(
-        table_of_part("Ten people", people, std::array{"bay_hours", "in_view_hours", "flips", "wrong_first"}));
-  }
+  if (const auto seen = runs_with(outcomes, {{"part", "seen"}}); !seen.empty()) add_seen(report, seen);
+  if (const auto people = runs_with(outcomes, {{"part", "people"}}); !people.empty()) add_people(report, people);
   return report;
 }
 

@@ -7,7 +7,9 @@
 #include "experiments/mapping/bent_drive.hpp"
 #include "experiments/mapping/calm_drives.hpp"
 #include "experiments/mapping/unseen_drive.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
+#include "experiments/seed_summary.hpp"
 #include "localization/motion/deskew.hpp"
 #include "localization/motion/odometry_buffer.hpp"
 #include "mapping/alignment/local_map.hpp"
@@ -103,20 +105,17 @@ std::vector<Run> runs_of(const Options& options) {
 }
 
 Report report_of(const std::vector<Outcome>& outcomes) {
-  const auto sum = [&](const char* number) {
-    double all = 0.0;
-    for (const Outcome& outcome : outcomes) all += outcome.number(number);
-    return all;
-  };
+  const std::vector<const Outcome*> runs = runs_with(outcomes, {});
+  constexpr Ratio called_false{"called_false", "bent"};
+  constexpr Ratio called_good{"called_good", "good"};
   Report report;
-  report.figures = {{.name = "bent maps", .value = sum("bent")},
-                    {.name = "of them called false",
-                     .value = sum("called_false") / sum("bent"),
-                     .target = Target{.least = kLeastShare}},
-                    {.name = "good maps", .value = sum("good")},
-                    {.name = "of them called good",
-                     .value = sum("called_good") / sum("good"),
-                     .target = Target{.least = kLeastShare}}};
+  report.figures = {sum_of_runs("bent maps", runs, "bent"),
+                    ratio_of_runs("of them called false", runs, called_false, Target{.least = kLeastShare}),
+                    sum_of_runs("good maps", runs, "good"),
+                    ratio_of_runs("of them called good", runs, called_good, Target{.least = kLeastShare})};
+  report.charts.push_back(
+      ratios_in_order("maps called what they are, share",
+                      {{"bent ones called false", called_false}, {"good ones called good", called_good}}, runs));
   return report;
 }
 

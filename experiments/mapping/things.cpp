@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "daemon/maps/stored_things.hpp"
@@ -13,7 +12,9 @@
 #include "experiments/drive/first_map.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/mapping/unseen_drive.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
+#include "experiments/seed_summary.hpp"
 #include "experiments/watch/mapping_run.hpp"
 #include "experiments/watch/thing_score.hpp"
 #include "mapping/things/assumed.hpp"
@@ -212,46 +213,36 @@ std::vector<Run> things_runs(const Options& options) {
   return runs;
 }
 
-double things_sum(const std::vector<const Outcome*>& outcomes, const char* number) {
-  double sum = 0.0;
-  for (const Outcome* outcome : outcomes) sum += outcome->number(number);
-  return sum;
-}
-
-/// NaN where there is nothing to have a share of.
-double things_share(const std::vector<const Outcome*>& outcomes, const char* part, const char* all) {
-  const double whole = things_sum(outcomes, all);
-  return whole > 0.0 ? things_sum(outcomes, part) / whole : std::numeric_limits<double>::quiet_NaN();
-}
-
-double things_most(const std::vector<const Outcome*>& outcomes, const char* number) {
-  double most = 0.0;
-  for (const Outcome* outcome : outcomes) most = std::max(most, outcome->number(number));
-  return most;
-}
+constexpr Ratio kSolidSeen{"solid_seen", "solid_looks"};
+constexpr Ratio kSolidAssumed{"solid_assumed", "solid_looks"};
+constexpr Ratio kChangesRight{"right", "changes_seen"};
 
 void add_figures(Report& report, const std::string& world, const std::vector<const Outcome*>& of_it) {
-  const auto add = [&](const char* name, double value, std::optional<Target> target, const char* unit = "") {
-    report.figures.push_back({world + ": " + name, value, unit, target});
+  const auto ratio = [&](const char* name, const Ratio& of, const std::optional<Target>& target = {}) {
+    report.figures.push_back(ratio_of_runs(world + ": " + name, of_it, of, target));
   };
-  const double hours = things_sum(of_it, "minutes") / 60.0;
-  add("events told that belong to no change, an hour", things_sum(of_it, "told_of_nothing") / hours, {});
-  add("revisions an hour", things_sum(of_it, "revisions") / hours, {});
-  add("solid acceptance, as the map shows it", things_share(of_it, "solid_seen", "solid_looks"), {});
-  add("solid acceptance, with what is assumed", things_share(of_it, "solid_assumed", "solid_looks"),
-      world == "hall" ? std::optional{Target{.least = 0.985}} : std::nullopt);
-  add("assumed cells that are solid", things_share(of_it, "assumed_solid", "assumed_cells"), {});
-  add("assumed sides within 0.15 m at the end", things_share(of_it, "assumed_right", "assumed_sides"), {});
-  add("assumed sides of what was seen all around", things_sum(of_it, "assumed_of_seen"), Target{.most = 0.0});
-  if (things_sum(of_it, "changes_seen") == 0.0) return;
-  add("changes that were seen for 10 s", things_sum(of_it, "changes_seen"), {});
-  add("events a change, mean", things_share(of_it, "events", "changes_seen"), Target{.most = 1.1});
-  add("events of one change, most", things_most(of_it, "most_events"), Target{.most = 3.0});
-  add("changes of which nothing was told", things_share(of_it, "unfound", "changes_seen"), {});
-  add("kind and place right", things_share(of_it, "right", "changes_seen"), Target{.least = 0.97});
-  add("of those: both sides within 0.15 m", things_share(of_it, "right_size", "right"), Target{.least = 0.9});
-  add("moved things told as moved", things_share(of_it, "moved_right", "moved"), Target{.least = 0.9});
-  add("events \"moved\" that were none", things_share(of_it, "wrong_pairs", "told"), Target{.most = 0.02});
+  const auto sum = [&](const char* name, const char* number, const std::optional<Target>& target = {}) {
+    report.figures.push_back(sum_of_runs(world + ": " + name, of_it, number, target));
+  };
+  ratio("events told that belong to no change, an hour", {"told_of_nothing", "minutes", 60.0});
+  ratio("revisions an hour", {"revisions", "minutes", 60.0});
+  ratio("solid acceptance, as the map shows it", kSolidSeen);
+  ratio("solid acceptance, with what is assumed", kSolidAssumed,
+        world == "hall" ? std::optional{Target{.least = 0.985}} : std::nullopt);
+  ratio("assumed cells that are solid", {"assumed_solid", "assumed_cells"});
+  ratio("assumed sides within 0.15 m at the end", {"assumed_right", "assumed_sides"});
+  sum("assumed sides of what was seen all around", "assumed_of_seen", Target{.most = 0.0});
+  if (std::all_of(of_it.begin(), of_it.end(), [](const Outcome* run) { return run->number("changes_seen") == 0.0; }))
+    return;
+  sum("changes that were seen for 10 s", "changes_seen");
+  ratio("events a change, mean", {"events", "changes_seen"}, Target{.most = 1.1});
+  report.figures.push_back(
+      most_of_runs(world + ": events of one change, most", of_it, "most_events", Target{.most = 3.0}));
+  ratio("changes of which nothing was told", {"unfound", "changes_seen"});
+  ratio("kind and place right", kChangesRight, Target{.least = 0.97});
+  ratio("of those: both sides within 0.15 m", {"right_size", "right"}, Target{.least = 0.9});
+  ratio("moved things told as moved", {"moved_right", "moved"}, Target{.least = 0.9});
+  ratio("events \"moved\" that were none", {"wrong_pairs", "told"}, Target{.most = 0.02});
 }
 
 TextTable table_of_runs(const std::vector<Outcome>& outcomes) {
@@ -271,19 +262,17 @@ TextTable table_of_runs(const std::vector<Outcome>& outcomes) {
 
 Report things_report(const std::vector<Outcome>& outcomes) {
   Report report;
-  std::vector<const Outcome*> all;
   for (const std::string world : {"hall", "depot", "pushes", "racks", "unseen"}) {
-    std::vector<const Outcome*> of_it;
-    for (const Outcome& outcome : outcomes) {
-      if (outcome.label("world") == world) of_it.push_back(&outcome);
-    }
-    if (of_it.empty()) continue;
-    add_figures(report, world, of_it);
-    all.insert(all.end(), of_it.begin(), of_it.end());
+    if (const auto of_it = runs_with(outcomes, {{"world", world}}); !of_it.empty()) add_figures(report, world, of_it);
   }
-  report.figures.push_back({"processor a revision, most", things_most(all, "revision_cpu_ms"), "ms", std::nullopt});
-  report.figures.push_back(
-      {"cells that are followed, most", things_most(all, "cell_kb"), "kB", Target{.most = 3000.0}});
+  const std::vector<const Outcome*> all = runs_with(outcomes, {});
+  report.figures.push_back(most_of_runs("processor a revision, most", all, "revision_cpu_ms", {}, "ms"));
+  report.figures.push_back(most_of_runs("cells that are followed, most", all, "cell_kb", Target{.most = 3000.0}, "kB"));
+  report.charts.push_back(ratios_in_order("of all worlds, share",
+                                          {{"solid acceptance, as the map shows it", kSolidSeen},
+                                           {"solid acceptance, with what is assumed", kSolidAssumed},
+                                           {"changes: kind and place right", kChangesRight}},
+                                          all));
   report.tables.push_back(table_of_runs(outcomes));
   return report;
 }

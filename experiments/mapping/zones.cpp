@@ -10,6 +10,7 @@
 #include "core/random.hpp"
 #include "experiments/drive/mapping_drive.hpp"
 #include "experiments/mapping/unseen_drive.hpp"
+#include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/seed_summary.hpp"
 #include "experiments/watch/mapping_run.hpp"
@@ -145,33 +146,30 @@ std::vector<Run> zones_runs(const Options& options) {
                      [options](std::uint64_t seed, double minutes) { return zones_outcome(seed, minutes, options); });
 }
 
-double sum_over(const std::vector<Outcome>& outcomes, const char* number) {
-  double sum = 0.0;
-  for (const Outcome& outcome : outcomes) sum += outcome.number(number);
-  return sum;
-}
-
-double median_over(const std::vector<Outcome>& outcomes, const char* number) {
+Figure median_of_worlds(const std::string& name, const std::vector<Outcome>& outcomes, const char* number,
+                        const std::optional<Target>& target = {}) {
   std::vector<double> values;
   for (const Outcome& outcome : outcomes) values.push_back(outcome.number(number));
-  return spread_of(values, Better::kLess).median;
+  return {name, spread_of(values, Better::kLess).median, "", target, "", certainty_of_quantile(values, 0.5)};
 }
 
 Report zones_report(const std::vector<Outcome>& outcomes) {
+  const std::vector<const Outcome*> runs = runs_with(outcomes, {});
   Report report;
   report.figures = {
-      {.name = "cells written within frozen zones",
-       .value = sum_over(outcomes, "frozen_written"),
-       .target = Target{.most = 0.0}},
-      {.name = "the same ground without zones", .value = sum_over(outcomes, "written_without")},
-      {.name = "cells written beside frozen zones", .value = sum_over(outcomes, "written_beside")},
-      {.name = "RMSE where all in ignored zones has moved, to that by the right map, median of the worlds",
-       .value = median_over(outcomes, "ignored_to_right"),
-       .target = Target{.most = kMostWorse}},
-      {.name = "the same without zones", .value = median_over(outcomes, "moved_to_right")},
+      sum_of_runs("cells written within frozen zones", runs, "frozen_written", Target{.most = 0.0}),
+      sum_of_runs("the same ground without zones", runs, "written_without"),
+      sum_of_runs("cells written beside frozen zones", runs, "written_beside"),
+      median_of_worlds("RMSE where all in ignored zones has moved, to that by the right map, median of the worlds",
+                       outcomes, "ignored_to_right", Target{.most = kMostWorse}),
+      median_of_worlds("the same without zones", outcomes, "moved_to_right"),
       count_of_seeds("worlds in which ignored zones are better than none", outcomes, [](const Outcome& outcome) {
         return outcome.number("moved_ignored_m") < outcome.number("moved_m");
       })};
+  report.charts.push_back(ratios_in_order("RMSE to that by the right map",
+                                          {{"what has moved is ignored", {"moved_ignored_m", "right_map_m"}},
+                                           {"without zones", {"moved_m", "right_map_m"}}},
+                                          runs));
   TextTable table{"Each world", {"seed", "layout"}, {}};
   for (const auto& [name, value] : outcomes.front().numbers) table.columns.push_back(name);
   for (const Outcome& outcome : outcomes) {
