@@ -115,6 +115,8 @@ Written by `./dev experiments --only zones`, or from what `deltamap-lab zones` h
 Worlds of [`unseen`](../experiments.md), each with six squares of 2 to 6 m about things that its first map knows. *Frozen*: localizer and mapping
 as delivered; a cell counts as written if any revision has it other than the first map. *Ignored*: the map is never written, and within the
 squares all that it has is drawn 0.5 m off in x and y; RMSE of the pose by that map and the zones, by the right map, and by that map without zones.
+Within ignored zones the localizer is shown unknown ground, whatever the map has there: by the right map and these zones it is as far off, to the
+digit. What is above 1 is what the beams into the squares would have told.
 """
 
 # Their tables fill a page of their own. `empty`: what an empty table says; `seed`: of other seeds the page lies in the run's folder.
