@@ -18,6 +18,7 @@ void SurveyStep::begin_drive() {
 
 std::size_t SurveyStep::end_drive() {
   if (odometry_) odometry_->end();
+  odometry_.reset();
   return scans_.size() - scans_before_;
 }
 
@@ -29,10 +30,10 @@ bool SurveyStep::finish() {
 void SurveyStep::take(surveying::slam::MovedScan&& moved) {
   const Timestamp time = moved.tracked.scan.time;
   const Pose2 start_from_robot = moved.tracked.odom_from_robot;
-  slam_.observe(std::move(moved));
+  slam_.observe(moved);
   const auto& keyframes = slam_.survey().keyframes;
   scans_.push_back({time, static_cast<std::uint32_t>(keyframes.size() - 1),
-                    motion_between(keyframes.back().tracked->odom_from_robot, start_from_robot)});
+                    motion_between(keyframes.back().odom_from_robot, start_from_robot)});
 }
 
 std::vector<TrajectoryPoint> SurveyStep::trajectory() const {

@@ -152,8 +152,7 @@ double doubled_wall_m(const DrivenScans& driven, const std::vector<Pose2>& poses
   for (const surveying::quality::Pass& pass : surveying::quality::passes_of(placed_at(driven, poses))) {
     std::map<Place, Mean> off;
     for (std::uint32_t k = pass.first; k <= pass.last; ++k) {
-      for (const auto& point :
-           mapping::registration::surface_of(mapping::registration::ray_ends(driven.scans[k], kLongestM))) {
+      for (const auto& point : mapping::registration::surface_of(driven.scans[k].ends(kLongestM))) {
         const Point2 place = driven.truth[k] * point.position;
         Point2 normal = Pose2{0.0, 0.0, driven.truth[k].theta} * point.normal;
         if (normal.x() + 0.3 * normal.y() < 0.0) normal = -normal;  // one side for all

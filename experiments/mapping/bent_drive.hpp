@@ -14,7 +14,7 @@ namespace deltamap::experiments {
 
 /// Scans of one or two drives, in order of time.
 struct DrivenScans {
-  std::vector<TrackedScan> scans;
+  std::vector<localization::motion::PackedScan> scans;
   std::vector<std::uint32_t> drive;
   std::vector<Pose2> truth;
 };

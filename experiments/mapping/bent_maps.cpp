@@ -10,7 +10,6 @@
 #include "experiments/pooled_runs.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/seed_summary.hpp"
-#include "localization/motion/deskew.hpp"
 #include "localization/motion/odometry_buffer.hpp"
 #include "mapping/alignment/local_map.hpp"
 #include "simulation/drawn/unseen_world.hpp"
@@ -44,10 +43,8 @@ DrivenScans driven_scans(std::uint64_t seed, double minutes, const localization:
       const Pose2 moved = motion_between(driven.truth.back(), now.map_from_robot);
       if (moved.position().norm() < kKeptM && std::abs(moved.theta) < kKeptRad) return;
     }
-    TrackedScan tracked;
-    tracked.rays = localization::motion::deskewed(now.scan, odometry.velocity_at(now.scan.time));
-    tracked.scan = std::move(now.scan);
-    driven.scans.push_back(std::move(tracked));
+    driven.scans.emplace_back(now.scan, odometry.velocity_at(now.scan.time),
+                              driven.scans.empty() ? nullptr : &driven.scans.back());
     driven.drive.push_back(number);
     driven.truth.push_back(now.map_from_robot);
   };
@@ -59,9 +56,12 @@ DrivenScans driven_scans(std::uint64_t seed, double minutes, const localization:
 }
 
 surveying::quality::MapQuality quality_of(const DrivenScans& driven, const std::vector<Pose2>& poses) {
-  std::vector<const TrackedScan*> scans;
-  for (const TrackedScan& scan : driven.scans) scans.push_back(&scan);
-  return surveying::quality::map_quality(mapping::alignment::local_map(scans, poses, {0, 0, kResolutionM, {0.0, 0.0}},
+  TrackedScan unpacked;
+  const mapping::alignment::ScanSource scan_at = [&](std::size_t k) -> const TrackedScan& {
+    unpacked = driven.scans[k].tracked();
+    return unpacked;
+  };
+  return surveying::quality::map_quality(mapping::alignment::local_map(scan_at, poses, {0, 0, kResolutionM, {0.0, 0.0}},
                                                                        {.longest_m = 25.0, .least_hits = 2}),
                                          placed_at(driven, poses));
 }

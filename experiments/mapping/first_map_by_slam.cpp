@@ -74,7 +74,7 @@ void survey_world(std::uint64_t seed, double minutes, Surveyed& surveyed) {
   const daemon::CpuTimer timer{surveyed.cpu_s};
   if (!surveyed.step.finish()) throw std::runtime_error("first-map: the pose graph of a seed does not settle");
   for (const surveying::slam::Keyframe& keyframe : surveyed.step.slam().survey().keyframes) {
-    surveyed.truth.push_back(true_poses.at(keyframe.tracked->scan.time));
+    surveyed.truth.push_back(true_poses.at(keyframe.scan.time()));
   }
 }
 

@@ -7,23 +7,28 @@
 
 namespace deltamap::localization::motion {
 
+Point2 laser_at(const Pose2& robot_from_laser, const BodyVelocity& velocity, double offset_s) {
+  const double turned_rad = velocity.turn_rate_rad_per_s * offset_s;
+  const double driven_m = velocity.speed_m_per_s * offset_s;
+  // An arc: the chord lies along half the turn, and the whole turn's sine and cosine follow from the half's.
+  const double c = std::cos(0.5 * turned_rad);
+  const double s = std::sin(0.5 * turned_rad);
+  const Point2 turned{1.0 - 2.0 * s * s, 2.0 * s * c};
+  return {driven_m * c + turned.x() * robot_from_laser.x - turned.y() * robot_from_laser.y,
+          driven_m * s + turned.y() * robot_from_laser.x + turned.x() * robot_from_laser.y};
+}
+
 std::vector<RayInRobot> deskewed(const Scan& scan, const BodyVelocity& velocity) {
   std::vector<RayInRobot> rays(scan.beams.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Beam& beam = scan.beams[i];
-    const double turned_rad = velocity.turn_rate_rad_per_s * static_cast<double>(beam.offset_s);
-    const double driven_m = velocity.speed_m_per_s * static_cast<double>(beam.offset_s);
-    // An arc: the chord lies along half the turn, and the whole turn's sine and cosine follow from the half's.
-    const double c = std::cos(0.5 * turned_rad);
-    const double s = std::sin(0.5 * turned_rad);
-    const Point2 turned{1.0 - 2.0 * s * s, 2.0 * s * c};
-    const Pose2& laser = scan.robot_from_laser;
-    const Point2 origin{driven_m * c + turned.x() * laser.x - turned.y() * laser.y,
-                        driven_m * s + turned.y() * laser.x + turned.x() * laser.y};
+    const auto offset_s = static_cast<double>(beam.offset_s);
+    const Point2 origin = laser_at(scan.robot_from_laser, velocity, offset_s);
     rays[i].origin = origin.cast<float>();
     rays[i].end = rays[i].origin;
     if (beam.kind != BeamKind::kRange) continue;
-    const double direction_rad = turned_rad + laser.theta + scan.bearing_rad(i);
+    const double direction_rad =
+        velocity.turn_rate_rad_per_s * offset_s + scan.robot_from_laser.theta + scan.bearing_rad(i);
     const Point2 along{std::cos(direction_rad), std::sin(direction_rad)};
     rays[i].end = (origin + static_cast<double>(beam.range_m) * along).cast<float>();
   }

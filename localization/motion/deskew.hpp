@@ -11,6 +11,10 @@
 
 namespace deltamap::localization::motion {
 
+/// Where the laser is so long after Scan::time, in the robot's frame at Scan::time, for a robot that keeps its
+/// velocity.
+[[nodiscard]] Point2 laser_at(const Pose2& robot_from_laser, const BodyVelocity& velocity, double offset_s);
+
 /// One ray a beam, for a robot that keeps its velocity during the sweep.
 [[nodiscard]] std::vector<RayInRobot> deskewed(const Scan& scan, const BodyVelocity& velocity);
 

@@ -3,6 +3,8 @@
 // for the cell that it ends in.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <span>
 
 #include "core/grid/occupancy_grid.hpp"
@@ -19,6 +21,12 @@ struct LocalMapParams {
 /// One pose for each scan. The cells are those of `lattice` (its resolution and the phase of its borders), as many as
 /// the scans touch. Only valid ranges count.
 [[nodiscard]] OccupancyGrid local_map(std::span<const TrackedScan* const> scans, std::span<const Pose2> map_from_robot,
+                                      const GridGeometry& lattice, const LocalMapParams& params);
+
+/// The nth scan, until the next one is asked for: they need not all exist at one time.
+using ScanSource = std::function<const TrackedScan&(std::size_t)>;
+/// The same, of as many scans as there are poses; each is asked for twice.
+[[nodiscard]] OccupancyGrid local_map(const ScanSource& scan_at, std::span<const Pose2> map_from_robot,
                                       const GridGeometry& lattice, const LocalMapParams& params);
 
 }  // namespace deltamap::mapping::alignment

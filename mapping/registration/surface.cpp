@@ -46,6 +46,24 @@ std::optional<Point2> normal_of(const PlaceSums& sums) {
   return Point2{-std::copysign(std::sqrt(std::max(0.0, sine2)), xy), std::sqrt(std::max(0.0, cosine2))};
 }
 
+/// Of the line through an end and its neighbours.
+std::optional<Point2> normal_at(std::span<const Point2> ordered_ends, std::size_t i) {
+  const Point2& here = ordered_ends[i];
+  const double most_gap_m = std::max(kMostGap_m, kMostGapPerRange * here.norm());
+  PlaceSums sums;
+  sums.add(Point2::Zero());
+  const auto adjoins = [&](std::size_t a, std::size_t b) {
+    return (ordered_ends[a] - ordered_ends[b]).norm() <= most_gap_m;
+  };
+  for (std::size_t k = 1; k <= kNeighbours && i >= k && adjoins(i - k, i - k + 1); ++k) {
+    sums.add(ordered_ends[i - k] - here);
+  }
+  for (std::size_t k = 1; k <= kNeighbours && i + k < ordered_ends.size() && adjoins(i + k, i + k - 1); ++k) {
+    sums.add(ordered_ends[i + k] - here);
+  }
+  return normal_of(sums);
+}
+
 GridGeometry table_around(std::span<const SurfacePoint> points, double cell_m, double reach_m) {
   if (points.empty()) return {0, 0, cell_m, {0.0, 0.0}};
   Point2 low = points.front().position;
@@ -79,22 +97,18 @@ std::vector<SurfacePoint> surface_of(std::span<const Point2> ordered_ends) {
   std::vector<SurfacePoint> surface;
   surface.reserve(ordered_ends.size());
   for (std::size_t i = 0; i < ordered_ends.size(); ++i) {
-    const Point2& here = ordered_ends[i];
-    const double most_gap_m = std::max(kMostGap_m, kMostGapPerRange * here.norm());
-    PlaceSums sums;
-    sums.add(Point2::Zero());
-    const auto adjoins = [&](std::size_t a, std::size_t b) {
-      return (ordered_ends[a] - ordered_ends[b]).norm() <= most_gap_m;
-    };
-    for (std::size_t k = 1; k <= kNeighbours && i >= k && adjoins(i - k, i - k + 1); ++k) {
-      sums.add(ordered_ends[i - k] - here);
-    }
-    for (std::size_t k = 1; k <= kNeighbours && i + k < ordered_ends.size() && adjoins(i + k, i + k - 1); ++k) {
-      sums.add(ordered_ends[i + k] - here);
-    }
-    if (const auto normal = normal_of(sums)) surface.push_back({here, *normal});
+    if (const auto normal = normal_at(ordered_ends, i)) surface.push_back({ordered_ends[i], *normal});
   }
   return surface;
+}
+
+std::vector<Eigen::Vector2f> normals_of(std::span<const Point2> ordered_ends) {
+  std::vector<Eigen::Vector2f> normals;
+  normals.reserve(ordered_ends.size());
+  for (std::size_t i = 0; i < ordered_ends.size(); ++i) {
+    normals.emplace_back(normal_at(ordered_ends, i).value_or(Point2::Zero()).cast<float>());
+  }
+  return normals;
 }
 
 std::vector<SurfacePoint> contour_of(const OccupancyGrid& map, const CellBox& box) {

@@ -23,6 +23,10 @@ struct SurfacePoint {
 /// Where the beams with a valid range of at most `longest_m` ended, in the robot's frame, in order of bearing.
 [[nodiscard]] std::vector<Point2> ray_ends(const TrackedScan& tracked, double longest_m);
 
+/// Of the surface that each of the ends lies on with its neighbours in the sweep, unit length; zero where it lies on
+/// none.
+[[nodiscard]] std::vector<Eigen::Vector2f> normals_of(std::span<const Point2> ordered_ends);
+
 /// The ends that lie on a line with their neighbours in the sweep; the others are left out.
 [[nodiscard]] std::vector<SurfacePoint> surface_of(std::span<const Point2> ordered_ends);
 

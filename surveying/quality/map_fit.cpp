@@ -30,12 +30,10 @@ bool is_beside_wall(const OccupancyGrid& map, const Point2& place) {
 ScanFit scan_fit(const OccupancyGrid& map, const PlacedScan& scan) {
   ScanFit fit;
   const PointsInMap in_map{scan.map_from_robot};
-  const std::size_t beams = std::min(scan.tracked->rays.size(), scan.tracked->scan.beams.size());
-  for (std::size_t i = 0; i < beams; ++i) {
-    const Beam& beam = scan.tracked->scan.beams[i];
-    if (beam.kind != BeamKind::kRange || static_cast<double>(beam.range_m) > kLongestSeenM) continue;
+  for (std::size_t i = 0; i < scan.scan->size(); ++i) {
+    if (!scan.scan->ends_within(i, kLongestSeenM)) continue;
     ++fit.ends;
-    fit.explained += is_beside_wall(map, in_map(scan.tracked->rays[i].end)) ? 1 : 0;
+    fit.explained += is_beside_wall(map, in_map(scan.scan->end(i))) ? 1 : 0;
   }
   return fit;
 }

@@ -35,8 +35,7 @@ MapScale map_scale(std::span<const PlacedScan> scans, std::span<const Pass> pass
     for (std::uint32_t k = passes[i].first; k <= passes[i].last; ++k) {
       const PointsInMap in_map{scans[k].map_from_robot};
       const Point2 robot = scans[k].map_from_robot.position();
-      const auto surface =
-          mapping::registration::surface_of(mapping::registration::ray_ends(*scans[k].tracked, kLongestSeenM));
+      const auto surface = mapping::registration::surface_of(scans[k].scan->ends(kLongestSeenM));
       for (std::size_t e = k % kEachEnd; e < surface.size(); e += kEachEnd) {
         const Point2 end = in_map(surface[e].position);
         Point2 normal = Pose2{0.0, 0.0, scans[k].map_from_robot.theta} * surface[e].normal;

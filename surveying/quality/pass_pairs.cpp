@@ -36,10 +36,10 @@ class PassBeams {
 
   void add(const PlacedScan& scan, std::size_t first_beam) {
     const PointsInMap in_map{scan.map_from_robot};
-    const std::size_t beams = std::min(scan.tracked->rays.size(), scan.tracked->scan.beams.size());
-    for (std::size_t i = first_beam; i < beams; i += kEachBeam) {
-      if (scan.tracked->scan.beams[i].kind != BeamKind::kRange) continue;
-      add(in_map(scan.tracked->rays[i].origin), in_map(scan.tracked->rays[i].end));
+    const TrackedScan tracked = scan.scan->tracked();
+    for (std::size_t i = first_beam; i < tracked.rays.size(); i += kEachBeam) {
+      if (tracked.scan.beams[i].kind != BeamKind::kRange) continue;
+      add(in_map(tracked.rays[i].origin), in_map(tracked.rays[i].end));
     }
   }
   [[nodiscard]] const std::vector<Sums>& sums() const { return sums_; }

@@ -7,13 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "core/messages.hpp"
+#include "core/geometry/pose2.hpp"
+#include "localization/motion/packed_scan.hpp"
 
 namespace deltamap::surveying::quality {
 
-/// A scan, and where the map has it. The estimate in it is not looked at: rays and beams are.
+/// A scan, and where the map has it.
 struct PlacedScan {
-  const TrackedScan* tracked = nullptr;
+  const localization::motion::PackedScan* scan = nullptr;
   Pose2 map_from_robot;
   std::uint32_t drive = 0;  ///< which of the drives it belongs to
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "core/geometry/points_in_map.hpp"
@@ -47,8 +48,9 @@ class PassView {
 
   void collect(std::uint32_t pass, std::vector<SeenCell>& walls) const {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-      const Counts& of = cells_[i];
-      if (of.scans < kFewestScans || of.hits < of.crossings) continue;
+      if (cells_[i].surface == 0 || cells_[i].hits < cells_[i].crossings) continue;
+      const Surface& of = surfaces_[cells_[i].surface - 1U];
+      if (of.scans < kFewestScans) continue;
       const int row = static_cast<int>(i) / columns_;
       const float angle = 0.5F * std::atan2(of.sine2, of.cosine2);
       const Eigen::Vector2f either{std::cos(angle), std::sin(angle)};
@@ -59,10 +61,14 @@ class PassView {
 
  private:
   struct Counts {
-    std::uint16_t last_scan = 0;  // counted from 1
-    std::uint16_t scans = 0;
     std::uint16_t hits = 0;
     std::uint16_t crossings = 0;
+    std::uint16_t surface = 0;  // in surfaces_, counted from 1; 0: none
+  };
+  /// Of the few cells in which ends lie on one: a pass has far fewer ends than 65 536.
+  struct Surface {
+    std::uint16_t last_scan = 0;  // counted from 1
+    std::uint16_t scans = 0;
     float cosine2 = 0.0F;  // of twice the normal's direction, so that either side is the same
     float sine2 = 0.0F;
     Eigen::Vector2f to_laser{0.0F, 0.0F};  // summed directions
@@ -76,11 +82,20 @@ class PassView {
     return column < 0 || row < 0 || column >= columns_ || place >= cells_.size() ? nullptr : &cells_[place];
   }
 
+  Surface* surface_in(Counts& cell) {
+    if (cell.surface == 0 && surfaces_.size() < std::numeric_limits<std::uint16_t>::max()) {
+      surfaces_.emplace_back();
+      cell.surface = static_cast<std::uint16_t>(surfaces_.size());
+    }
+    return cell.surface == 0 ? nullptr : &surfaces_[cell.surface - 1U];
+  }
+
   void add(const PlacedScan& scan, std::uint16_t number) {
     const PointsInMap in_map{scan.map_from_robot};
-    for (const auto& point :
-         mapping::registration::surface_of(mapping::registration::ray_ends(*scan.tracked, kLongestSeenM))) {
-      Counts* const of = at(grid_.cell_at(in_map(point.position)));
+    for (const auto& point : mapping::registration::surface_of(scan.scan->ends(kLongestSeenM))) {
+      Counts* const cell = at(grid_.cell_at(in_map(point.position)));
+      if (cell == nullptr) continue;
+      Surface* const of = surface_in(*cell);
       if (of == nullptr) continue;
       const double angle2 = 2.0 * (std::atan2(point.normal.y(), point.normal.x()) + scan.map_from_robot.theta);
       of->cosine2 += static_cast<float>(std::cos(angle2));
@@ -89,9 +104,9 @@ class PassView {
       of->scans = static_cast<std::uint16_t>(of->scans + (of->last_scan == number ? 0 : 1));
       of->last_scan = number;
     }
-    const std::size_t beams = std::min(scan.tracked->rays.size(), scan.tracked->scan.beams.size());
-    for (std::size_t i = 0; i < beams; ++i) {
-      if (scan.tracked->scan.beams[i].kind == BeamKind::kRange) add_beam(in_map, scan.tracked->rays[i]);
+    const TrackedScan tracked = scan.scan->tracked();
+    for (std::size_t i = 0; i < tracked.rays.size(); ++i) {
+      if (tracked.scan.beams[i].kind == BeamKind::kRange) add_beam(in_map, tracked.rays[i]);
     }
   }
 
@@ -110,6 +125,7 @@ class PassView {
   Cell first_;
   int columns_ = 0;
   std::vector<Counts> cells_;
+  std::vector<Surface> surfaces_;
 };
 
 }  // namespace

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Compiled with -O3: sixteen cells side by side are compared by one instruction (SSE2).
 #include "surveying/slam/correlation_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+
+#include "core/geometry/points_in_map.hpp"
 
 namespace deltamap::surveying::slam {
 namespace {
@@ -18,7 +23,9 @@ constexpr double kElsewhereRad = 0.2;  // and so is this turn
 /// The scan's ends at one heading, as cells with the robot in the middle of the window.
 struct Rotation {
   double heading_rad = 0.0;
-  std::vector<Cell> cells;
+  std::span<const Cell> cells;
+  Cell first;  // of the box around them
+  Cell last;
 };
 
 /// A square of 2^level × 2^level shifts of one rotation, by its lowest corner.
@@ -38,13 +45,8 @@ class BranchAndBound {
     const double arm_m = std::max(kLeastArmM, std::sqrt(squares / static_cast<double>(ends.size())));
     const double step_rad = field.resolution_m() / arm_m;
     const int steps = static_cast<int>(std::ceil(window.heading_rad / step_rad));
-    for (int i = -steps; i <= steps; ++i) {
-      Rotation rotation{window.centre.theta + i * step_rad, {}};
-      rotation.cells.reserve(ends.size());
-      const Pose2 at{window.centre.x, window.centre.y, rotation.heading_rad};
-      for (const Point2& end : ends) rotation.cells.push_back(field.cell_at(at * end));
-      rotations_.push_back(std::move(rotation));
-    }
+    cells_.reserve((2 * static_cast<std::size_t>(steps) + 1) * ends.size());  // rotations look into them
+    for (int i = -steps; i <= steps; ++i) rotations_.push_back(rotated(ends, window.centre.theta + i * step_rad));
   }
 
   /// The best shift of a rotation whose sum is above `least`; `avoided`: not the same place as that.
@@ -60,6 +62,7 @@ class BranchAndBound {
         }
       }
     }
+    std::stable_sort(branches.begin(), branches.end(), is_better);
     std::optional<Branch> found;
     descend(level, branches, least, avoided, found);
     return found;
@@ -76,23 +79,49 @@ class BranchAndBound {
   }
 
  private:
+  static bool is_better(const Branch& a, const Branch& b) { return a.bound > b.bound; }
+
+  Rotation rotated(std::span<const Point2> ends, double heading_rad) {
+    const std::size_t before = cells_.size();
+    const PointsInMap in_field{{window_.centre.x, window_.centre.y, heading_rad}};
+    for (const Point2& end : ends) cells_.push_back(field_.cell_at(in_field(end)));
+    Rotation rotation{heading_rad, std::span{cells_}.subspan(before), cells_[before], cells_[before]};
+    for (const Cell& cell : rotation.cells) {
+      rotation.first = {std::min(rotation.first.column, cell.column), std::min(rotation.first.row, cell.row)};
+      rotation.last = {std::max(rotation.last.column, cell.column), std::max(rotation.last.row, cell.row)};
+    }
+    return rotation;
+  }
+
   /// 0 where it cannot be above `least`.
   [[nodiscard]] std::uint32_t sum_of(int level, std::size_t rotation, int column, int row, std::uint32_t least) const {
-    const std::vector<Cell>& cells = rotations_[rotation].cells;
+    const Rotation& of = rotations_[rotation];
+    const CorrelationField::Level& values = field_.level(level);
+    if (values.reaches(of.first.column + column, of.first.row + row) &&
+        values.reaches(of.last.column + column, of.last.row + row)) {
+      const std::uint8_t* const middle = values.at(column, row);
+      const std::ptrdiff_t stride = values.stride();
+      return sum_over(of.cells, least, [=](const Cell& cell) { return middle[cell.row * stride + cell.column]; });
+    }
+    return sum_over(of.cells, least, [&](const Cell& cell) {
+      const bool is_reached = values.reaches(cell.column + column, cell.row + row);
+      return is_reached ? *values.at(cell.column + column, cell.row + row) : std::uint8_t{0};
+    });
+  }
+
+  template <typename ValueOf>
+  [[nodiscard]] static std::uint32_t sum_over(std::span<const Cell> cells, std::uint32_t least, ValueOf&& value_of) {
     std::uint32_t sum = 0;
     for (std::size_t i = 0; i < cells.size();) {
-      for (const std::size_t last = std::min(cells.size(), i + kAtOnce); i < last; ++i) {
-        sum += field_.most_from(level, cells[i].column + column, cells[i].row + row);
-      }
+      for (const std::size_t last = std::min(cells.size(), i + kAtOnce); i < last; ++i) sum += value_of(cells[i]);
       if (sum + kFull * (cells.size() - i) <= least) return 0;
     }
     return sum;
   }
 
-  void descend(int level, std::vector<Branch>& branches, std::uint32_t& least, const Branch* avoided,
+  /// `branches`: the best first.
+  void descend(int level, std::span<const Branch> branches, std::uint32_t& least, const Branch* avoided,
                std::optional<Branch>& found) const {
-    std::stable_sort(branches.begin(), branches.end(),
-                     [](const Branch& a, const Branch& b) { return a.bound > b.bound; });
     for (const Branch& branch : branches) {
       if (branch.bound <= least) return;
       if (level == 0) {
@@ -102,15 +131,20 @@ class BranchAndBound {
         continue;
       }
       const int half = 1 << (level - 1);
-      std::vector<Branch> parts;
+      std::array<Branch, 4> parts;
+      std::size_t count = 0;
       for (const Cell& part : {Cell{0, 0}, Cell{half, 0}, Cell{0, half}, Cell{half, half}}) {
         const int column = branch.column + part.column;
         const int row = branch.row + part.row;
         if (column > reach_ || row > reach_) continue;
         const Branch below{branch.rotation, column, row, sum_of(level - 1, branch.rotation, column, row, least)};
-        if (below.bound > least) parts.push_back(below);
+        if (below.bound <= least) continue;
+        const auto place = std::upper_bound(parts.begin(), parts.begin() + count, below, is_better);
+        std::move_backward(place, parts.begin() + count, parts.begin() + count + 1);
+        *place = below;
+        ++count;
       }
-      descend(level - 1, parts, least, avoided, found);
+      descend(level - 1, std::span{parts}.first(count), least, avoided, found);
     }
   }
 
@@ -123,26 +157,46 @@ class BranchAndBound {
   const CorrelationField& field_;
   const SearchWindow& window_;
   int reach_;  // cells to each side
+  std::vector<Cell> cells_;
   std::vector<Rotation> rotations_;
 };
 
-/// Values around an end, row by row.
-std::vector<std::uint8_t> stamp_of_an_end() {
-  std::vector<std::uint8_t> stamp;
+constexpr std::size_t kSideBySide = 16;  // cells
+using StampRow = std::array<std::uint8_t, kSideBySide>;
+static_assert(2 * kStampCells + 1 <= kSideBySide);
+
+/// Values around an end, row by row; 0 beyond.
+std::array<StampRow, 2 * kStampCells + 1> stamp_of_an_end() {
+  std::array<StampRow, 2 * kStampCells + 1> stamp{};
   for (int y = -kStampCells; y <= kStampCells; ++y) {
     for (int x = -kStampCells; x <= kStampCells; ++x) {
       const double value = kFull * std::exp(-0.5 * (x * x + y * y) / (kDeviationCells * kDeviationCells));
-      stamp.push_back(static_cast<std::uint8_t>(std::lround(value)));
+      stamp[static_cast<std::size_t>(y + kStampCells)][static_cast<std::size_t>(x + kStampCells)] =
+          static_cast<std::uint8_t>(std::lround(value));
     }
   }
   return stamp;
 }
 
+void raise_to(const StampRow& least, std::uint8_t* values) {
+  StampRow raised;
+  std::memcpy(raised.data(), values, raised.size());
+  for (std::size_t i = 0; i < raised.size(); ++i) raised[i] = std::max(raised[i], least[i]);
+  std::memcpy(values, raised.data(), raised.size());
+}
+
 }  // namespace
+
+CorrelationField::Level::Level(int width, int height, int border)
+    : width_{width},
+      height_{height},
+      border_{border},
+      values_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + kSideBySide, 0) {}
 
 CorrelationField::CorrelationField(std::span<const Point2> ends, double resolution_m, int levels)
     : resolution_m_{resolution_m} {
-  Level finest;
+  constexpr int kMargin = kStampCells + 1;  // whatever rounding does
+  Cell last{-1, -1};
   if (!ends.empty()) {
     Point2 low = ends.front();
     Point2 high = low;
@@ -150,58 +204,47 @@ CorrelationField::CorrelationField(std::span<const Point2> ends, double resoluti
       low = low.cwiseMin(end);
       high = high.cwiseMax(end);
     }
-    corner_ = low - Point2::Constant(kStampCells * resolution_m);
-    const Cell last = cell_at(high + Point2::Constant(kStampCells * resolution_m));
-    finest.width = last.column + 1;
-    finest.height = last.row + 1;
+    corner_ = low - Point2::Constant(kMargin * resolution_m);
+    last = cell_at(high + Point2::Constant(kMargin * resolution_m));
   }
-  finest.values.assign(static_cast<std::size_t>(finest.width) * static_cast<std::size_t>(finest.height), 0);
-  const std::vector<std::uint8_t> stamp = stamp_of_an_end();
-  for (const Point2& end : ends) {
-    const Cell cell = cell_at(end);
-    if (finest.values[static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(finest.width) +
-                      static_cast<std::size_t>(cell.column)] == kFull)
-      continue;  // an end lies there already
-    const std::uint8_t* from = stamp.data();
-    for (int y = cell.row - kStampCells; y <= cell.row + kStampCells; ++y) {
-      for (int x = cell.column - kStampCells; x <= cell.column + kStampCells; ++x, ++from) {
-        if (x < 0 || y < 0 || x >= finest.width || y >= finest.height) continue;
-        std::uint8_t& value = finest.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(finest.width) +
-                                            static_cast<std::size_t>(x)];
-        value = std::max(value, *from);
-      }
-    }
+  levels_.push_back(Level{last.column + 1, last.row + 1, 0});
+  for (const Point2& end : ends) levels_.front().lay_around(cell_at(end));
+  for (int level = 1; level < levels; ++level) levels_.push_back(levels_.back().coarser(1 << (level - 1)));
+}
+
+void CorrelationField::Level::lay_around(Cell end) {
+  static const std::array<StampRow, 2 * kStampCells + 1> stamp = stamp_of_an_end();
+  if (*at(end.column, end.row) == kFull) return;  // an end lies there already
+  std::uint8_t* values = row(end.row - kStampCells) + end.column - kStampCells;
+  for (const StampRow& of : stamp) {
+    raise_to(of, values);
+    values += width_;
   }
-  levels_.push_back(std::move(finest));
-  for (int level = 1; level < levels; ++level) levels_.push_back(coarser(levels_.back(), 1 << (level - 1)));
 }
 
 Cell CorrelationField::cell_at(const Point2& place) const {
-  const Point2 cells = (place - corner_) / resolution_m_;
-  return {static_cast<int>(std::floor(cells.x())), static_cast<int>(std::floor(cells.y()))};
+  return {rounded_down((place.x() - corner_.x()) / resolution_m_),
+          rounded_down((place.y() - corner_.y()) / resolution_m_)};
 }
 
-CorrelationField::Level CorrelationField::coarser(const Level& of, int reach) {
-  Level level{of.width + reach, of.height + reach, of.border + reach, {}};
-  level.values.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+CorrelationField::Level CorrelationField::Level::coarser(int reach) const {
+  Level made{width_ + reach, height_ + reach, border_ + reach};
   // The same place of the finer level lies `reach` further in; around it there is nothing.
-  const auto width = static_cast<std::size_t>(of.width);
+  const auto width = static_cast<std::size_t>(width_);
   const auto margin = static_cast<std::size_t>(reach);
+  const std::vector<std::uint8_t> nothing(width, 0);
   std::vector<std::uint8_t> both_rows(width + 2 * margin, 0);
   const auto row_of = [&](int y) {
-    return y < 0 || y >= of.height ? nullptr : of.values.data() + static_cast<std::size_t>(y) * width;
+    return y < 0 || y >= height_ ? nothing.data() : values_.data() + static_cast<std::size_t>(y) * width;
   };
-  for (int y = 0; y < level.height; ++y) {
-    const std::uint8_t* const here = row_of(y - reach);
-    const std::uint8_t* const above = row_of(y);
-    for (std::size_t x = 0; x < width; ++x) {
-      both_rows[margin + x] = std::max<std::uint8_t>(here == nullptr ? 0 : here[x], above == nullptr ? 0 : above[x]);
-    }
-    std::uint8_t* const made =
-        level.values.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width);
-    for (std::size_t x = 0; x < width + margin; ++x) made[x] = std::max(both_rows[x], both_rows[x + margin]);
+  const auto larger = [](const std::uint8_t* a, const std::uint8_t* b, std::size_t count, std::uint8_t* of_both) {
+    for (std::size_t x = 0; x < count; ++x) of_both[x] = std::max(a[x], b[x]);
+  };
+  for (int y = 0; y < made.height_; ++y) {
+    larger(row_of(y - reach), row_of(y), width, both_rows.data() + margin);
+    larger(both_rows.data(), both_rows.data() + margin, width + margin, made.row(y));
   }
-  return level;
+  return made;
 }
 
 std::optional<CorrelativeMatch> best_match(const CorrelationField& field, std::span<const Point2> ends,

@@ -4,6 +4,7 @@
 // matching", 2009; Hess et al., "Real-time loop closure in 2D LIDAR SLAM", 2016, §V-B).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -24,27 +25,36 @@ class CorrelationField {
   [[nodiscard]] int levels() const { return static_cast<int>(levels_.size()); }
   /// The cell of a place, counted from the field's corner; any place has one.
   [[nodiscard]] Cell cell_at(const Point2& place) const;
-  /// The largest value of the 2^level cells to the right of and above the cell, itself included; 0 to 255.
-  [[nodiscard]] std::uint8_t most_from(int level, int column, int row) const {
-    const Level& of = levels_[static_cast<std::size_t>(level)];
-    const int x = column + of.border;
-    const int y = row + of.border;
-    if (static_cast<unsigned>(x) >= static_cast<unsigned>(of.width) ||
-        static_cast<unsigned>(y) >= static_cast<unsigned>(of.height)) {
-      return 0;
+
+  /// Of each cell the largest value of the 2^level cells to the right of and above it, itself included; 0 to 255.
+  class Level {
+   public:
+    /// Where it can be other than 0.
+    [[nodiscard]] bool reaches(int column, int row) const {
+      return static_cast<unsigned>(column + border_) < static_cast<unsigned>(width_) &&
+             static_cast<unsigned>(row + border_) < static_cast<unsigned>(height_);
     }
-    return of.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(of.width) + static_cast<std::size_t>(x)];
-  }
+    /// Of the cell, which it must reach; those beside it follow, those of the next row stride() on.
+    [[nodiscard]] const std::uint8_t* at(int column, int row) const {
+      return values_.data() + std::ptrdiff_t{row + border_} * width_ + column + border_;
+    }
+    [[nodiscard]] int stride() const { return width_; }
+
+   private:
+    friend class CorrelationField;
+    Level(int width, int height, int border);
+    std::uint8_t* row(int y) { return values_.data() + std::ptrdiff_t{y} * width_; }
+    void lay_around(Cell end);
+    [[nodiscard]] Level coarser(int reach) const;
+
+    int width_ = 0;
+    int height_ = 0;
+    int border_ = 0;                    // cells before the field's corner from which its values can be reached
+    std::vector<std::uint8_t> values_;  // row by row, and some bytes more
+  };
+  [[nodiscard]] const Level& level(int level) const { return levels_[static_cast<std::size_t>(level)]; }
 
  private:
-  struct Level {
-    int width = 0;
-    int height = 0;
-    int border = 0;  ///< cells before the field's corner from which its values can be reached
-    std::vector<std::uint8_t> values;
-  };
-  [[nodiscard]] static Level coarser(const Level& of, int reach);
-
   double resolution_m_;
   Point2 corner_{0.0, 0.0};
   std::vector<Level> levels_;

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "surveying/slam/relative_covariance.hpp"
+#include "surveying/slam/seen_space.hpp"
+#include "surveying/slam/submap_matcher.hpp"
 
 namespace deltamap::surveying::slam {
 namespace {
@@ -30,10 +32,19 @@ constexpr SubmapMatchParams kJoining{.least_score = 0.6,
 
 }  // namespace
 
-DriveJoining::Joined::Joined(const Survey& survey)
-    : nodes{survey.joined_nodes()},
-      matcher{submap(survey, nodes, nodes.front(), 0.0), kEverywhereM},
-      space{survey, nodes, nodes.front()} {}
+struct DriveJoining::Joined {
+  std::vector<std::uint32_t> nodes;
+  SubmapMatcher matcher;
+  SeenSpace space;
+
+  explicit Joined(const Survey& survey)
+      : nodes{survey.joined_nodes()},
+        matcher{submap(survey, nodes, nodes.front(), 0.0), kEverywhereM},
+        space{survey, nodes, nodes.front()} {}
+};
+
+DriveJoining::DriveJoining(const Survey& survey) : survey_{survey} {}
+DriveJoining::~DriveJoining() = default;
 
 void DriveJoining::search_from(std::uint32_t node) {
   const double driven_m = survey_.keyframes[node].driven_m;
@@ -52,7 +63,7 @@ void DriveJoining::search(std::uint32_t node, double length_m) {
   std::iota(nodes.begin(), nodes.end(), first);
   const std::uint32_t middle = nodes[nodes.size() / 2];
   const auto match = joined_->matcher.match(submap(survey_, nodes, middle, kEndEachM).ends,
-                                            survey_.keyframes[node].tracked->scan.range_deviation_m,
+                                            survey_.keyframes[node].scan.range_deviation_m(),
                                             joined_->matcher.everywhere(), {}, kJoining);
   if (!match || joined_->space.contradicted(survey_, nodes, middle, match->submap_from_scan) > kMostContradicted) {
     return;

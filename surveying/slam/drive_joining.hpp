@@ -7,15 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include "surveying/slam/seen_space.hpp"
-#include "surveying/slam/submap_matcher.hpp"
 #include "surveying/slam/survey.hpp"
 
 namespace deltamap::surveying::slam {
 
 class DriveJoining {
  public:
-  explicit DriveJoining(const Survey& survey) : survey_{survey} {}
+  explicit DriveJoining(const Survey& survey);
+  ~DriveJoining();
+  DriveJoining(const DriveJoining&) = delete;
+  DriveJoining& operator=(const DriveJoining&) = delete;
 
   /// After each keyframe of a drive that has a frame of its own.
   void search_from(std::uint32_t node);
@@ -24,12 +25,7 @@ class DriveJoining {
 
  private:
   /// What the first drive, and those that have been joined to it, have seen.
-  struct Joined {
-    explicit Joined(const Survey& survey);
-    std::vector<std::uint32_t> nodes;
-    SubmapMatcher matcher;
-    SeenSpace space;
-  };
+  struct Joined;
   /// One look.
   struct Found {
     std::uint32_t from = 0;  ///< keyframe after which it was looked for

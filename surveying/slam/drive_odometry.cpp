@@ -26,19 +26,19 @@ DriveOdometry::DriveOdometry(const localization::motion::OdometryBufferParams& p
     : range_deviation_m_{range_deviation_m},
       sink_{std::move(sink)},
       reports_{long_enough(params)},
-      ahead_{localization::motion::OdometryBuffer{params}, {}},
+      ahead_{Witnessed{localization::motion::OdometryBuffer{params}, {}}},
       followed_{localization::motion::OdometryBuffer{long_enough(params)}, {}} {}
 
 std::optional<double> DriveOdometry::lag_s() const {
   const std::optional<double> found = followed_.scans.lag_s();
-  return found ? found : ahead_.scans.lag_s();
+  return found ? found : first_lag_s_;
 }
 
 void DriveOdometry::observe(const Odometry& odometry) {
   if (newest_report_ && seconds(*newest_report_ - odometry.time) > kClockFellBackS) end();
   newest_report_ = odometry.time;
   reports_.add(odometry);
-  ahead_.wheels.add(odometry);
+  if (ahead_) ahead_->wheels.add(odometry);
   followed_.wheels.add(odometry);
   hand_on_what_is_due();
 }
@@ -47,7 +47,7 @@ void DriveOdometry::observe(Scan scan) {
   if (newest_scan_ && scan.time < *newest_scan_) {
     end();
     reports_.clock_fell_back(*newest_scan_);
-    ahead_.wheels.clock_fell_back(*newest_scan_);
+    if (ahead_) ahead_->wheels.clock_fell_back(*newest_scan_);
     followed_.wheels.clock_fell_back(*newest_scan_);
   }
   newest_scan_ = scan.time;
@@ -65,8 +65,10 @@ void DriveOdometry::end() {
 }
 
 void DriveOdometry::scout(const Scan& scan) {
-  const auto rays = localization::motion::deskewed(scan, ahead_.wheels.velocity_at(scan.time));
-  (void)ahead_.scans.observe(scan, rays, ahead_.wheels, reports_);
+  const auto rays = localization::motion::deskewed(scan, ahead_->wheels.velocity_at(scan.time));
+  (void)ahead_->scans.observe(scan, rays, ahead_->wheels, reports_);
+  first_lag_s_ = ahead_->scans.lag_s();
+  if (first_lag_s_) ahead_.reset();
 }
 
 void DriveOdometry::hand_on_what_is_due() {
@@ -88,6 +90,8 @@ void DriveOdometry::hand_on(Scan scan) {
   const auto velocity = wheels.velocity_at(scan.time + duration_from_seconds(lag));
   MovedScan moved;
   moved.tracked.rays = localization::motion::deskewed(scan, velocity);
+  moved.tracked.speed_m_per_s = velocity.speed_m_per_s;
+  moved.tracked.turn_rate_rad_per_s = velocity.turn_rate_rad_per_s;
   const localization::odometer::LaserMotion seen = followed_.scans.observe(scan, moved.tracked.rays, wheels, reports_);
   moved.deviation = seen.deviation;
   moved.kept = seen.kept;

@@ -54,7 +54,8 @@ class DriveOdometry {
   std::optional<Timestamp> newest_report_;
   std::optional<Timestamp> newest_scan_;
   localization::motion::OdometryBuffer reports_;  ///< as they came
-  Witnessed ahead_;                               ///< without delay, for the lag
+  std::optional<Witnessed> ahead_;                ///< without delay, until it has told the lag
+  std::optional<double> first_lag_s_;
   Witnessed followed_;
   std::optional<Timestamp> last_;  ///< that was handed on
   Pose2 start_from_robot_;

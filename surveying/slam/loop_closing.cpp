@@ -7,6 +7,7 @@
 
 #include "core/geometry/pose_spread.hpp"
 #include "surveying/slam/relative_covariance.hpp"
+#include "surveying/slam/submap_matcher.hpp"
 
 namespace deltamap::surveying::slam {
 namespace {
@@ -54,20 +55,26 @@ bool LoopClosing::is_way_back(std::uint32_t node, std::uint32_t other) const {
 }
 
 /// The nearest one of each older way that may be near.
-std::vector<std::uint32_t> LoopClosing::candidates(std::uint32_t node,
-                                                   const std::vector<std::optional<PoseCovariance>>& known) const {
+std::vector<LoopClosing::Candidate> LoopClosing::candidates(std::uint32_t node) const {
   const auto away_m = [&](std::uint32_t other) { return distance_between(survey_.poses[node], survey_.poses[other]); };
-  std::vector<std::uint32_t> near;
+  std::vector<std::uint32_t> older;
   for (std::uint32_t other = 0; other < node; ++other) {
-    if (!known[other] || !is_way_back(node, other)) continue;
-    if (away_m(other) <= kSeesM + window_of({}, *known[other]).position_m) near.push_back(other);
+    if (is_way_back(node, other) && away_m(other) <= kSeesM + kMostWindowM) older.push_back(other);
   }
-  std::stable_sort(near.begin(), near.end(), [&](auto a, auto b) { return away_m(a) < away_m(b); });
-  std::vector<std::uint32_t> chosen;
-  for (const std::uint32_t other : near) {
-    const Keyframe& there = survey_.keyframes[other];
-    const bool is_of_a_chosen_way = std::any_of(chosen.begin(), chosen.end(), [&](std::uint32_t one) {
-      const Keyframe& of = survey_.keyframes[one];
+  const auto known = relative_covariances(survey_, node, older);
+  std::vector<Candidate> near;
+  for (std::size_t i = 0; i < older.size(); ++i) {
+    if (known[i] && away_m(older[i]) <= kSeesM + window_of({}, *known[i]).position_m) {
+      near.push_back({older[i], *known[i]});
+    }
+  }
+  std::stable_sort(near.begin(), near.end(),
+                   [&](const Candidate& a, const Candidate& b) { return away_m(a.node) < away_m(b.node); });
+  std::vector<Candidate> chosen;
+  for (const Candidate& other : near) {
+    const Keyframe& there = survey_.keyframes[other.node];
+    const bool is_of_a_chosen_way = std::any_of(chosen.begin(), chosen.end(), [&](const Candidate& one) {
+      const Keyframe& of = survey_.keyframes[one.node];
       return of.drive == there.drive && std::abs(of.driven_m - there.driven_m) < 2.0 * kReferenceM;
     });
     if (!is_of_a_chosen_way) chosen.push_back(other);
@@ -89,26 +96,24 @@ std::optional<mapping::alignment::PoseLink> LoopClosing::loop_between(std::uint3
 }
 
 void LoopClosing::search(std::uint32_t node) {
-  const auto known = relative_covariances(survey_, node);
-  const std::vector<std::uint32_t> tried = candidates(node, known);
+  const std::vector<Candidate> tried = candidates(node);
   if (tried.empty()) return;
   const Submap seen = submap(survey_, back_by(survey_, node, kLoopSearchedM), node, node, kLoopEndEachM);
-  for (const std::uint32_t other : tried) {
+  for (const auto& [other, covariance] : tried) {
     if (const auto told = loop_between(other, node)) {
       consider(*told);  // it may confirm others
       continue;
     }
     const Pose2 node_from_other = motion_between(survey_.poses[node], survey_.poses[other]);
     const Pose2 expected = inverse(node_from_other);
-    const PoseCovariance unsure = inverted_covariance(node_from_other, *known[other]);
+    const PoseCovariance unsure = inverted_covariance(node_from_other, covariance);
     SearchWindow window = window_of(expected, unsure);
     window.position_m += kLeastWindowM;
     window.heading_rad = std::min(kMostWindowRad, window.heading_rad + kLeastWindowRad);
     SubmapMatcher matcher{
         submap(survey_, back_by(survey_, other, kReferenceM), on_by(survey_, other, kReferenceM), other, 0.0),
         window.position_m};
-    const auto match =
-        matcher.match(seen.ends, survey_.keyframes[node].tracked->scan.range_deviation_m, window, {}, kLoop);
+    const auto match = matcher.match(seen.ends, survey_.keyframes[node].scan.range_deviation_m(), window, {}, kLoop);
     if (!match) continue;
     const Eigen::Vector3d innovation = difference(expected, match->submap_from_scan);
     if (squared_deviations(innovation, unsure + match->covariance) > kMostChi2) continue;
@@ -205,7 +210,7 @@ void LoopClosing::match_neighbours() {
                                  on_by(survey_, *nearest, kNeighbourSubmapM), *nearest, 0.0),
                           kLeastWindowM};
     const auto match = matcher.match(
-        survey_.keyframes[node].ends, survey_.keyframes[node].tracked->scan.range_deviation_m,
+        survey_.keyframes[node].ends(), survey_.keyframes[node].scan.range_deviation_m(),
         {motion_between(survey_.poses[*nearest], survey_.poses[node]), kLeastWindowM, kLeastWindowRad}, {}, kNeighbour);
     if (match) found.push_back({*nearest, node, match->submap_from_scan, match->covariance, true});
   }

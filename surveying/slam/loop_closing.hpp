@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "surveying/slam/submap_matcher.hpp"
 #include "surveying/slam/survey.hpp"
 
 namespace deltamap::surveying::slam {
@@ -32,8 +31,11 @@ class LoopClosing {
   [[nodiscard]] std::optional<mapping::alignment::PoseLink> loop_between(std::uint32_t other, std::uint32_t node) const;
   void search(std::uint32_t node);
   void search_all(std::optional<std::uint32_t> drive);
-  [[nodiscard]] std::vector<std::uint32_t> candidates(std::uint32_t node,
-                                                      const std::vector<std::optional<PoseCovariance>>& known) const;
+  struct Candidate {
+    std::uint32_t node = 0;
+    PoseCovariance covariance;  ///< as seen from where the robot is
+  };
+  [[nodiscard]] std::vector<Candidate> candidates(std::uint32_t node) const;
   [[nodiscard]] bool is_way_back(std::uint32_t node, std::uint32_t other) const;
   [[nodiscard]] bool agree(const mapping::alignment::PoseLink& a, const mapping::alignment::PoseLink& b) const;
   void consider(const mapping::alignment::PoseLink& loop);

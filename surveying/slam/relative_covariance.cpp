@@ -7,6 +7,8 @@
 #include <queue>
 #include <utility>
 
+#include "core/geometry/points_in_map.hpp"
+
 namespace deltamap::surveying::slam {
 namespace {
 
@@ -14,6 +16,12 @@ constexpr double kArmM = 10.0;  // what a heading that is off by a radian counts
 
 double cost_of(const PoseCovariance& covariance) {
   return covariance(0, 0) + covariance(1, 1) + kArmM * kArmM * covariance(2, 2);
+}
+
+/// Of what lies `arm` on from there, were the step known exactly.
+double least_cost(const PoseCovariance& known, const Point2& arm) {
+  return known(0, 0) + known(1, 1) + 2.0 * (arm.x() * known(1, 2) - arm.y() * known(0, 2)) +
+         (arm.squaredNorm() + kArmM * kArmM) * known(2, 2);
 }
 
 Eigen::Matrix3d turned_by(double theta) {
@@ -49,8 +57,12 @@ PoseCovariance inverted_covariance(const Pose2& a_from_b, const PoseCovariance& 
   return by * of_a_from_b * by.transpose();
 }
 
-std::vector<std::optional<PoseCovariance>> relative_covariances(const Survey& survey, std::uint32_t seen_from) {
-  std::vector<std::optional<PoseCovariance>> found(survey.keyframes.size());
+std::vector<std::optional<PoseCovariance>> relative_covariances(const Survey& survey, std::uint32_t seen_from,
+                                                                std::span<const std::uint32_t> wanted) {
+  std::vector<char> is_wanted(survey.keyframes.size(), 0);
+  for (const std::uint32_t node : wanted) is_wanted[node] = 1;
+  std::size_t left = wanted.size();
+  std::vector<char> is_settled(survey.keyframes.size(), 0);
   std::vector<double> least(survey.keyframes.size(), std::numeric_limits<double>::infinity());
   std::vector<PoseCovariance> best(survey.keyframes.size());
   using Waiting = std::pair<double, std::uint32_t>;
@@ -58,25 +70,34 @@ std::vector<std::optional<PoseCovariance>> relative_covariances(const Survey& su
   best[seen_from] = PoseCovariance::Zero();
   least[seen_from] = 0.0;
   waiting.emplace(0.0, seen_from);
-  while (!waiting.empty()) {
+  while (!waiting.empty() && left > 0) {
     const std::uint32_t node = waiting.top().second;
     waiting.pop();
-    if (found[node]) continue;
-    found[node] = best[node];
+    if (is_settled[node] != 0) continue;
+    is_settled[node] = 1;
+    left -= is_wanted[node] != 0 ? 1 : 0;
     const Pose2 here = motion_between(survey.poses[seen_from], survey.poses[node]);
+    const Pose2 node_from_survey = inverse(survey.poses[node]);
+    const PointsInMap turned{{0.0, 0.0, here.theta}};
     for (const std::uint32_t place : survey.links_of[node]) {
       const mapping::alignment::PoseLink& link = survey.links[place];
       const bool onward = link.from == node;
       const std::uint32_t next = onward ? link.to : link.from;
-      if (found[next]) continue;
+      if (is_settled[next] != 0) continue;
+      const Pose2 step = node_from_survey * survey.poses[next];
+      if (least_cost(best[node], turned(step.position())) >= least[next]) continue;
       const PoseCovariance of_step = onward ? link.covariance : inverted_covariance(link.from_from_to, link.covariance);
-      const Pose2 step = motion_between(survey.poses[node], survey.poses[next]);
       const PoseCovariance covariance = composed_covariance(here, best[node], step, of_step);
       if (cost_of(covariance) >= least[next]) continue;
       best[next] = covariance;
       least[next] = cost_of(covariance);
       waiting.emplace(least[next], next);
     }
+  }
+  std::vector<std::optional<PoseCovariance>> found;
+  found.reserve(wanted.size());
+  for (const std::uint32_t node : wanted) {
+    found.push_back(is_settled[node] != 0 ? std::optional{best[node]} : std::nullopt);
   }
   return found;
 }

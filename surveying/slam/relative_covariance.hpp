@@ -5,15 +5,17 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "surveying/slam/survey.hpp"
 
 namespace deltamap::surveying::slam {
 
-/// Of each keyframe (x, y, θ) in the frame of `seen_from`; none where no way leads there.
+/// Of each of `wanted`, keyframes, (x, y, θ) in the frame of `seen_from`; none where no way leads there.
 [[nodiscard]] std::vector<std::optional<PoseCovariance>> relative_covariances(const Survey& survey,
-                                                                              std::uint32_t seen_from);
+                                                                              std::uint32_t seen_from,
+                                                                              std::span<const std::uint32_t> wanted);
 
 /// Of a from b times b from c, where both are measured independently.
 [[nodiscard]] PoseCovariance composed_covariance(const Pose2& a_from_b, const PoseCovariance& of_a_from_b,

@@ -34,7 +34,7 @@ double SeenSpace::contradicted(const Survey& survey, std::span<const std::uint32
   std::size_t looked_at = 0;
   std::size_t against = 0;
   for (const std::uint32_t node : nodes) {
-    const TrackedScan& tracked = *survey.keyframes[node].tracked;
+    const TrackedScan tracked = survey.keyframes[node].scan.tracked();
     const PointsInMap in_seen{seen_from_frame_of_nodes *
                               motion_between(survey.poses[frame_of_nodes], survey.poses[node])};
     const std::size_t beams = std::min(tracked.rays.size(), tracked.scan.beams.size());

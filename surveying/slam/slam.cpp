@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "core/geometry/angle.hpp"
@@ -41,7 +40,7 @@ void Slam::begin_drive() {
   survey_.component.push_back(static_cast<std::uint32_t>(survey_.component.size()));
 }
 
-void Slam::observe(MovedScan moved) {
+void Slam::observe(const MovedScan& moved) {
   assert(!survey_.component.empty() && "a drive has begun");
   const bool is_first = begins();
   if (!is_first) {
@@ -54,8 +53,8 @@ void Slam::observe(MovedScan moved) {
   const auto node = static_cast<std::uint32_t>(survey_.keyframes.size());
   const mapping::alignment::PoseLink link{node - 1, node, motion, since_keyframe_.covariance(), false};
   since_keyframe_.begin(moved);
-  survey_.add(keyframe(std::make_shared<const TrackedScan>(std::move(moved.tracked)),
-                       static_cast<std::uint32_t>(survey_.component.size() - 1), driven_m_));
+  const Keyframe* const like = survey_.keyframes.empty() ? nullptr : &survey_.keyframes.back();
+  survey_.add(keyframe(moved.tracked, static_cast<std::uint32_t>(survey_.component.size() - 1), driven_m_, like));
   if (!is_first) follow(link);
 }
 
@@ -77,10 +76,11 @@ std::optional<mapping::alignment::PoseLink> Slam::matched_link(const mapping::al
   const std::uint32_t first = back_by(survey_, moved.from, kFollowedM);
   SubmapMatcher matcher{submap(survey_, first, moved.from, moved.from, 0.0),
                         window_of(motion, moved.covariance).position_m};
+  const std::vector<Point2> ends = here.ends();
   PoseCovariance unsure = moved.covariance;
   for (int looks = 0; looks < kMostLooks; ++looks, unsure *= kWidened * kWidened) {
     const bool is_guessed = looks > 0 || motion.position().norm() > kGapM;
-    const auto match = matcher.match(here.ends, here.tracked->scan.range_deviation_m, window_of(motion, unsure),
+    const auto match = matcher.match(ends, here.scan.range_deviation_m(), window_of(motion, unsure),
                                      {motion, unsure.inverse()}, is_guessed ? kGuessed : kFollowing);
     if (!match || match->is_at_rim) continue;
     return mapping::alignment::PoseLink{moved.from, moved.to, match->submap_from_scan, match->covariance, false};

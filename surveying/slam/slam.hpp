@@ -26,7 +26,7 @@ class Slam {
   /// What follows belongs to another drive, begun anywhere.
   void begin_drive();
   /// Scans of one drive in order of time; those that are no keyframe are passed over.
-  void observe(MovedScan moved);
+  void observe(const MovedScan& moved);
   /// After the last scan: all poses at once. False: the measurements do not settle, the poses are worth nothing.
   [[nodiscard]] bool finish();
 

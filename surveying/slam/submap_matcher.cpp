@@ -5,9 +5,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
-#include <unordered_map>
 #include <utility>
 
 #include "core/geometry/pose_spread.hpp"
@@ -15,8 +15,7 @@
 namespace deltamap::surveying::slam {
 namespace {
 
-constexpr double kDeviations = 3.0;   // in which a scan is searched
-constexpr double kMostWindowM = 8.0;  // whatever is known
+constexpr double kDeviations = 3.0;  // in which a scan is searched
 constexpr double kCorrelationCellM = 0.1;
 constexpr int kMostLevels = 7;
 constexpr std::size_t kMostCorrelated = 500;  // ends of a scan, evenly
@@ -56,25 +55,49 @@ std::vector<Point2> evenly(std::span<const Point2> ends) {
   return some;
 }
 
+/// Finds a cell again by a table of places that are open (Knuth): a node a cell, as std::unordered_map has, costs
+/// thrice.
+class PlacesOfCells {
+ public:
+  /// At most so many cells.
+  explicit PlacesOfCells(std::size_t cells) : slots_(std::bit_ceil(2 * cells + 1)) {}
+  /// Of a cell that has come before its place; else `place` from now on.
+  std::uint32_t place_of(std::uint64_t cell, std::uint32_t place) {
+    std::size_t slot = (cell * 0x9E3779B97F4A7C15U) >> 32U;
+    for (;; ++slot) {
+      Slot& at = slots_[slot & (slots_.size() - 1)];
+      if (at.place_plus_1 == 0) at = {cell, place + 1};
+      if (at.cell == cell) return at.place_plus_1 - 1;
+    }
+  }
+
+ private:
+  struct Slot {
+    std::uint64_t cell = 0;
+    std::uint32_t place_plus_1 = 0;
+  };
+  std::vector<Slot> slots_;
+};
+
 /// Of each table cell the point next to its middle: passes over the same surface leave dozens.
 std::vector<mapping::registration::SurfacePoint> one_a_cell(
     const std::vector<mapping::registration::SurfacePoint>& points) {
-  std::unordered_map<std::uint64_t, std::size_t> place_of_cell;
+  PlacesOfCells places{points.size()};
   std::vector<mapping::registration::SurfacePoint> kept;
   std::vector<double> off2;
   for (const mapping::registration::SurfacePoint& point : points) {
     const Point2 in_table = point.position / kTableCellM;
-    const Point2 cell = in_table.array().floor();
-    const double off = (in_table - cell - Point2::Constant(0.5)).squaredNorm();
-    const auto word = [](double at) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(at)); };
-    const std::uint64_t key = std::uint64_t{word(cell.x())} << 32U | word(cell.y());
-    const auto [at, is_new] = place_of_cell.try_emplace(key, kept.size());
-    if (is_new) {
+    const Cell cell{rounded_down(in_table.x()), rounded_down(in_table.y())};
+    const double off = (in_table - Point2{cell.column + 0.5, cell.row + 0.5}).squaredNorm();
+    const auto word = [](int at) { return static_cast<std::uint32_t>(at); };
+    const std::uint64_t key = std::uint64_t{word(cell.column)} << 32U | word(cell.row);
+    const std::uint32_t place = places.place_of(key, static_cast<std::uint32_t>(kept.size()));
+    if (place == kept.size()) {
       kept.push_back(point);
       off2.push_back(off);
-    } else if (off < off2[at->second]) {
-      kept[at->second] = point;
-      off2[at->second] = off;
+    } else if (off < off2[place]) {
+      kept[place] = point;
+      off2[place] = off;
     }
   }
   return kept;

@@ -28,6 +28,7 @@ struct SubmapMatch {
   bool is_at_rim = false;  ///< of the window, beyond which the scan may fit better
 };
 
+inline constexpr double kMostWindowM = 8.0;  ///< searched to each side, whatever is known
 /// Around where a scan is expected, as far as that may be off.
 [[nodiscard]] SearchWindow window_of(const Pose2& expected, const PoseCovariance& unsure);
 

@@ -13,7 +13,6 @@
 namespace deltamap::surveying::slam {
 namespace {
 
-constexpr double kLongestM = 80.0;        // as far as an LMS200 sees
 constexpr double kAnchorVariance = 1e-6;  // of the first keyframe of a component: it gives the frame
 /// Which links are wrong is not for the solver to say.
 constexpr mapping::alignment::PoseNetworkParams kSolving{
@@ -21,10 +20,11 @@ constexpr mapping::alignment::PoseNetworkParams kSolving{
 
 }  // namespace
 
-Keyframe keyframe(std::shared_ptr<const TrackedScan> tracked, std::uint32_t drive, double driven_m) {
-  Keyframe made{std::move(tracked), drive, driven_m, {}, {}};
-  made.ends = mapping::registration::ray_ends(*made.tracked, kLongestM);
-  made.surface = mapping::registration::surface_of(made.ends);
+Keyframe keyframe(const TrackedScan& tracked, std::uint32_t drive, double driven_m, const Keyframe* like) {
+  const localization::motion::BodyVelocity velocity{tracked.speed_m_per_s, tracked.turn_rate_rad_per_s};
+  Keyframe made{
+      {tracked.scan, velocity, like == nullptr ? nullptr : &like->scan}, drive, driven_m, tracked.odom_from_robot, {}};
+  made.normals = mapping::registration::normals_of(made.ends());
   return made;
 }
 
@@ -90,6 +90,10 @@ Submap submap(const Survey& survey, std::uint32_t first, std::uint32_t last, std
 
 Submap submap(const Survey& survey, std::span<const std::uint32_t> nodes, std::uint32_t frame, double thinned_m) {
   Submap made;
+  std::size_t most = 0;
+  for (const std::uint32_t node : nodes) most += survey.keyframes[node].normals.size();
+  made.ends.reserve(thinned_m > 0.0 ? 0 : most);
+  made.surface.reserve(most);
   std::unordered_set<std::uint64_t> taken;
   const auto is_new = [&](const Point2& end) {
     if (thinned_m <= 0.0) return true;
@@ -101,14 +105,12 @@ Submap submap(const Survey& survey, std::span<const std::uint32_t> nodes, std::u
   for (const std::uint32_t node : nodes) {
     const Pose2 frame_from_node = motion_between(survey.poses[frame], survey.poses[node]);
     const PointsInMap in_frame{frame_from_node};
-    for (const Point2& end : survey.keyframes[node].ends) {
+    const PointsInMap turned{{0.0, 0.0, frame_from_node.theta}};
+    survey.keyframes[node].for_each_end([&](const Eigen::Vector2f& end, const Eigen::Vector2f& normal) {
       const Point2 place = in_frame(end);
       if (is_new(place)) made.ends.push_back(place);
-    }
-    const PointsInMap turned{{0.0, 0.0, frame_from_node.theta}};
-    for (const mapping::registration::SurfacePoint& point : survey.keyframes[node].surface) {
-      made.surface.push_back({in_frame(point.position), turned(point.normal)});
-    }
+      if (!normal.isZero(0.0F)) made.surface.push_back({place, turned(normal)});
+    });
   }
   return made;
 }

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/messages.hpp"
+#include "localization/motion/packed_scan.hpp"
 #include "mapping/alignment/pose_network.hpp"
 #include "mapping/registration/surface.hpp"
 
@@ -16,13 +16,27 @@ namespace deltamap::surveying::slam {
 
 /// A scan that takes part in the map, in its robot's frame.
 struct Keyframe {
-  std::shared_ptr<const TrackedScan> tracked;
+  localization::motion::PackedScan scan;
   std::uint32_t drive = 0;  ///< which of the drives it belongs to
   double driven_m = 0.0;    ///< along that drive, by the wheels
-  std::vector<Point2> ends;
-  std::vector<mapping::registration::SurfacePoint> surface;
+  Pose2 odom_from_robot;
+  std::vector<Eigen::Vector2f> normals;  ///< of each of ends(); zero where it lies on no straight surface
+
+  /// As far as the laser sees.
+  [[nodiscard]] std::vector<Point2> ends() const { return scan.ends(kLongestM); }
+  /// `visit(end, normal)`, both Eigen::Vector2f, for each of ends().
+  template <typename Visit>
+  void for_each_end(Visit&& visit) const {
+    auto normal = normals.begin();
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      if (scan.ends_within(i, kLongestM)) visit(scan.end(i), *normal++);
+    }
+  }
+  static constexpr double kLongestM = 80.0;
 };
-[[nodiscard]] Keyframe keyframe(std::shared_ptr<const TrackedScan> tracked, std::uint32_t drive, double driven_m);
+/// Its speeds are those of the sweep. `like`: another one of the same laser, or null.
+[[nodiscard]] Keyframe keyframe(const TrackedScan& tracked, std::uint32_t drive, double driven_m,
+                                const Keyframe* like = nullptr);
 
 /// Keyframes in order of time, drive by drive. Drives that no link joins have frames of their own.
 struct Survey {

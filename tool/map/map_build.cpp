@@ -172,7 +172,7 @@ surveying::quality::MapQuality quality_of(const surveying::slam::Survey& survey,
   std::vector<surveying::quality::PlacedScan> scans;
   for (const std::uint32_t node : survey.joined_nodes()) {
     const surveying::slam::Keyframe& keyframe = survey.keyframes[node];
-    scans.push_back({keyframe.tracked.get(), map_from_survey * survey.poses[node], keyframe.drive});
+    scans.push_back({&keyframe.scan, map_from_survey * survey.poses[node], keyframe.drive});
   }
   return surveying::quality::map_quality(grid, scans);
 }

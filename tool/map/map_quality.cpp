@@ -11,7 +11,6 @@
 
 #include "core/files/grid_file.hpp"
 #include "daemon/settings/settings.hpp"
-#include "localization/motion/deskew.hpp"
 #include "localization/motion/odometry_buffer.hpp"
 #include "simulation/score/trajectory_score.hpp"
 #include "tool/map/quality_report.hpp"
@@ -63,7 +62,7 @@ class PlacedDrives {
     localization::motion::OdometryBuffer odometry{settings_.localizer.odometry};
     const std::size_t before = scans_.size();
     const daemon::RecordingDecoder::Sinks sinks{[&](Odometry&& one, std::uint32_t) { odometry.add(one); },
-                                                [&](Scan&& scan) { place(std::move(scan), odometry); }};
+                                                [&](Scan&& scan) { place(scan, odometry); }};
     const auto faults = read_messages(recording, settings_, sinks, "judging");
     for (const std::string& line : faults.lines()) std::cerr << "deltamap: warning: " << line << '\n';
     if (scans_.size() == before)
@@ -73,23 +72,20 @@ class PlacedDrives {
   [[nodiscard]] const std::vector<PlacedScan>& scans() const { return scans_; }
 
  private:
-  void place(Scan scan, const localization::motion::OdometryBuffer& odometry) {
+  void place(const Scan& scan, const localization::motion::OdometryBuffer& odometry) {
     const auto pose = pose_at(trajectory_, scan.time);
     if (!pose) return;
     if (!scans_.empty() && scans_.back().drive == drive_) {
       const Pose2 moved = motion_between(scans_.back().map_from_robot, *pose);
       if (moved.position().norm() < kKeptEachM && std::abs(moved.theta) < kKeptEachRad) return;
     }
-    TrackedScan tracked;
-    tracked.rays = localization::motion::deskewed(scan, odometry.velocity_at(scan.time));
-    tracked.scan = std::move(scan);
-    kept_.push_back(std::move(tracked));
+    kept_.emplace_back(scan, odometry.velocity_at(scan.time), kept_.empty() ? nullptr : &kept_.back());
     scans_.push_back({&kept_.back(), *pose, drive_});
   }
 
   std::vector<StampedPose> trajectory_;
   const daemon::Settings& settings_;
-  std::deque<TrackedScan> kept_;  // which do not move
+  std::deque<localization::motion::PackedScan> kept_;  // which do not move
   std::vector<PlacedScan> scans_;
   std::uint32_t drive_ = 0;
 };

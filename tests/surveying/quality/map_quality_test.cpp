@@ -11,13 +11,14 @@ namespace {
 
 /// Of the map that the scans draw where they are placed: it always agrees with most of them.
 MapQuality quality_of(const std::vector<PlacedScan>& placed) {
-  std::vector<const TrackedScan*> scans;
   std::vector<Pose2> poses;
-  for (const PlacedScan& scan : placed) {
-    scans.push_back(scan.tracked);
-    poses.push_back(scan.map_from_robot);
-  }
-  return map_quality(mapping::alignment::local_map(scans, poses, {0, 0, 0.05, {0.0, 0.0}}, {.longest_m = 25.0}),
+  for (const PlacedScan& scan : placed) poses.push_back(scan.map_from_robot);
+  TrackedScan unpacked;
+  const mapping::alignment::ScanSource scan_at = [&](std::size_t k) -> const TrackedScan& {
+    unpacked = placed[k].scan->tracked();
+    return unpacked;
+  };
+  return map_quality(mapping::alignment::local_map(scan_at, poses, {0, 0, 0.05, {0.0, 0.0}}, {.longest_m = 25.0}),
                      placed);
 }
 
@@ -85,7 +86,8 @@ TEST(MapQuality, IsFalseWhereAStretchHangsOnTheWheels) {
   }
   Random random{3};
   const std::vector<Pose2> way = test::way_along({{0.5, 0.0}, {46.5, 0.0}});
-  const std::vector<TrackedScan> scans = test::surveyed(far, way, random, 8.0);
+  std::vector<localization::motion::PackedScan> scans;
+  for (const TrackedScan& seen : test::surveyed(far, way, random, 8.0)) scans.emplace_back(seen.scan);
   std::vector<PlacedScan> placed;
   for (std::size_t i = 0; i < way.size(); ++i) placed.push_back({&scans[i], way[i], 0});
   const MapQuality quality = quality_of(placed);

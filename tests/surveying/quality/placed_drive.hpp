@@ -10,12 +10,12 @@
 namespace deltamap::test {
 
 struct PlacedDrive {
-  std::vector<TrackedScan> scans;
+  std::vector<localization::motion::PackedScan> scans;
   std::vector<surveying::quality::PlacedScan> placed;
 
   PlacedDrive(const OccupancyGrid& hall, const std::vector<Pose2>& way) {
     Random random{7};
-    scans = surveyed(hall, way, random);
+    for (const TrackedScan& seen : surveyed(hall, way, random)) scans.emplace_back(seen.scan);
     for (std::size_t i = 0; i < way.size(); ++i) placed.push_back({&scans[i], way[i], 0});
   }
   PlacedDrive(const PlacedDrive&) = delete;

@@ -14,7 +14,7 @@ Survey turned_survey(const OccupancyGrid& hall, double turn_rad) {
   Survey survey;
   survey.component = {0, 1};
   for (const Pose2& pose : test::rounds_of_the_hall(1)) {
-    survey.add(keyframe(std::make_shared<const TrackedScan>(test::seen_scan(hall, pose, 0.005, random)), 0, 0.0));
+    survey.add(keyframe(test::seen_scan(hall, pose, 0.005, random), 0, 0.0));
     survey.poses.back() = Pose2{0.0, 0.0, turn_rad} * pose;
   }
   return survey;
@@ -58,13 +58,12 @@ TEST(DrawnMap, ShowsTheHall) {
 TEST(DrawnMap, LeavesOutWhatOneBeamAloneHasHitAndDrivesOfOtherFrames) {
   const OccupancyGrid hall = test::drawn_hall(0.05);
   Survey survey = turned_survey(hall, 0.0);
-  TrackedScan once = *survey.keyframes.front().tracked;
+  TrackedScan once = survey.keyframes.front().scan.tracked();
   for (Beam& beam : once.scan.beams) beam.kind = BeamKind::kNotValid;
-  once.scan.beams[90].kind = BeamKind::kRange;
-  once.rays[90].end = once.rays[90].origin + Eigen::Vector2f{3.0F, 0.0F};
-  survey.add(keyframe(std::make_shared<const TrackedScan>(once), 0, 0.0));
+  once.scan.beams[90] = {3.0F, 0.0F, BeamKind::kRange};  // straight ahead: its scan looks along x from beam 0 on
+  survey.add(keyframe(once, 0, 0.0));
   survey.poses.back() = {5.0, 7.0, 0.0};
-  survey.add(keyframe(survey.keyframes.front().tracked, 1, 0.0));
+  survey.add(keyframe(survey.keyframes.front().scan.tracked(), 1, 0.0));
   survey.poses.back() = {100.0, 100.0, 0.0};
   const OccupancyGrid drawn = drawn_map(survey, {}, 0.05);
   EXPECT_EQ(drawn.at(drawn.geometry().cell_at({8.0, 7.0})), CellState::kFree);

@@ -16,8 +16,7 @@ class TwoDrives : public testing::Test {
     double driven_m = 0.0;
     for (std::size_t i = 0; i < way.size(); ++i) {
       if (i > 0) driven_m += distance_between(way[i - 1], way[i]);
-      survey.add(keyframe(std::make_shared<const TrackedScan>(test::seen_scan(world, way[i], 0.01, random)), number,
-                          driven_m));
+      survey.add(keyframe(test::seen_scan(world, way[i], 0.01, random), number, driven_m));
       survey.poses.back() = motion_between(way.front(), way[i]);
       truth.push_back(way[i]);
       if (number > 0) joining.search_from(static_cast<std::uint32_t>(survey.keyframes.size() - 1));

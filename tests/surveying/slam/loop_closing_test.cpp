@@ -18,8 +18,7 @@ class BentWay : public testing::Test {
       if (i > 0) motion = motion_between(way[i - 2], way[i]);
       const double step_m = motion.position().norm();
       driven_m += step_m;
-      survey.add(
-          keyframe(std::make_shared<const TrackedScan>(test::seen_scan(hall, way[i], 0.01, random, 8.0)), 0, driven_m));
+      survey.add(keyframe(test::seen_scan(hall, way[i], 0.01, random, 8.0), 0, driven_m));
       truth.push_back(way[i]);
       if (i == 0) continue;
       const auto node = static_cast<std::uint32_t>(survey.keyframes.size() - 1);

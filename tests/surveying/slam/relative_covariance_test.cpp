@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "core/random.hpp"
 
 namespace deltamap::surveying::slam {
@@ -48,6 +50,8 @@ TEST(RelativeCovariance, OfTheWayBackIsThatOfItsSamples) {
               sampled(inverse(kFirst), [](Random& random) { return inverse(drawn(kFirst, 0.05, 0.02, random)); }));
 }
 
+constexpr std::array<std::uint32_t, 5> kAll{0, 1, 2, 3, 4};
+
 /// Four keyframes in a row, a metre apart; the fifth hangs on nothing.
 Survey row_of_keyframes() {
   Survey survey;
@@ -62,8 +66,8 @@ Survey row_of_keyframes() {
 
 TEST(RelativeCovariance, GrowsAlongTheLinksInBothDirections) {
   const Survey survey = row_of_keyframes();
-  const auto from_first = relative_covariances(survey, 0);
-  const auto from_last = relative_covariances(survey, 3);
+  const auto from_first = relative_covariances(survey, 0, kAll);
+  const auto from_last = relative_covariances(survey, 3, kAll);
   ASSERT_TRUE(from_first[3] && from_last[0]);
   EXPECT_TRUE(from_first[0]->isZero());
   EXPECT_NEAR((*from_first[3])(0, 0), 0.03, 1e-12);
@@ -73,10 +77,19 @@ TEST(RelativeCovariance, GrowsAlongTheLinksInBothDirections) {
   EXPECT_FALSE(from_first[4]) << "no way leads there";
 }
 
+TEST(RelativeCovariance, AnswersWhatIsAskedForInItsOrder) {
+  const Survey survey = row_of_keyframes();
+  const auto all = relative_covariances(survey, 0, kAll);
+  const auto some = relative_covariances(survey, 0, std::array<std::uint32_t, 2>{2, 1});
+  ASSERT_EQ(some.size(), 2U);
+  EXPECT_EQ(some[0], all[2]);
+  EXPECT_EQ(some[1], all[1]);
+}
+
 TEST(RelativeCovariance, TakesTheBetterOfTwoWays) {
   Survey survey = row_of_keyframes();
   survey.add({0, 3, {3.0, 0.0, 0.0}, diagonal(0.05, 0.001), true});
-  const auto known = relative_covariances(survey, 0);
+  const auto known = relative_covariances(survey, 0, kAll);
   EXPECT_NEAR((*known[3])(0, 0), 0.0025, 1e-12);
   EXPECT_LT((*known[2])(0, 0), 0.0126) << "and from there back";
 }

@@ -16,7 +16,7 @@ TEST(SeenSpace, IsContradictedByBeamsThroughWallsAndEndsInTheOpen) {
   Survey survey;
   survey.component = {0};
   for (const Pose2& pose : test::rounds_of_the_hall(1)) {
-    survey.add(keyframe(std::make_shared<const TrackedScan>(test::seen_scan(hall, pose, 0.01, random)), 0, 0.0));
+    survey.add(keyframe(test::seen_scan(hall, pose, 0.01, random), 0, 0.0));
     survey.poses.back() = pose;
   }
   std::vector<std::uint32_t> first(survey.keyframes.size() / 2);

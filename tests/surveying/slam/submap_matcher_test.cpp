@@ -13,8 +13,7 @@ Survey known_way(const OccupancyGrid& world, const std::vector<Pose2>& way, Rand
   Survey survey;
   survey.component = {0};
   for (std::size_t i = 0; i < way.size(); ++i) {
-    survey.add(keyframe(std::make_shared<const TrackedScan>(test::seen_scan(world, way[i], 0.01, random)), 0,
-                        0.2 * static_cast<double>(i)));
+    survey.add(keyframe(test::seen_scan(world, way[i], 0.01, random), 0, 0.2 * static_cast<double>(i)));
     survey.poses.back() = way[i];
   }
   return survey;
