@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/grid/grid_ray.hpp"
 #include "mapping/things/assumed.hpp"
 #include "mapping/things/outline_fit.hpp"
 
@@ -21,6 +22,7 @@ constexpr double kOnSidesShare = 0.85;  // of the surfaces of both, on the sides
 constexpr double kLineGap_m = 0.5;      // between two pieces of one face
 constexpr double kShownShare = 0.5;     // of the sum of two sides of a rectangle, by two of its faces
 
+constexpr int kShownCells = 2;        // that stood when another had gone: more than a stray one
 constexpr int kFreeInside = 4;        // cells that were found free: more than stray ones
 constexpr int kLooksThrough = 2;      // scans: more than one at a pose that was a little off
 constexpr double kClosedShare = 0.6;  // of the rectangle: its own cells, with those that it closes off
@@ -85,6 +87,12 @@ bool shows_free_inside(const Outline& outline, const ChangedMap& step) {
   return inside >= kFreeInside;
 }
 
+void forget_gone(Body& body) {
+  body.gone.clear();
+  body.shown.clear();
+  body.most_faces_gone = body.most_gone = 0;
+}
+
 void leave(Body& body, const ChangedMap& step) {
   Thing& thing = body.thing;
   thing.kind = step.takes_back ? ThingKind::kTakenBack : ThingKind::kGone;
@@ -92,9 +100,8 @@ void leave(Body& body, const ChangedMap& step) {
   thing.at.reset();
   body.freed.reset();
   body.is_pushed = false;
-  body.gone.clear();
-  body.most_faces_gone = 0;
-  body.grown = step.time;
+  forget_gone(body);
+  body.began = body.grown = step.time;
 }
 
 void judge_standing(Body& body, const ChangedMap& step, const ThingsParams& params) {
@@ -128,7 +135,9 @@ void judge_gone(Body& body, const ChangedMap& step) {
   const std::size_t faces = cells.faces.size();
   const std::size_t most = std::max(body.most_faces_gone, faces);
   body.most_faces_gone = most;
-  if (static_cast<double>(faces) >= kLeftShare * static_cast<double>(most) && faces > 0) {
+  body.most_gone = std::max(body.most_gone, body.gone.count());
+  const bool is_left = static_cast<double>(body.gone.count()) >= kLeftShare * static_cast<double>(body.most_gone);
+  if (is_left && static_cast<double>(faces) >= kLeftShare * static_cast<double>(most) && faces > 0) {
     body.freed = outline_of_gone(cells, step.map);
     body.thing.from = up_to_neighbours(*body.freed, step.map);
     if (!body.thing.at) body.thing.kind = ThingKind::kGone;
@@ -136,8 +145,7 @@ void judge_gone(Body& body, const ChangedMap& step) {
   }
   if (step.takes_back && body.told) body.thing.kind = ThingKind::kTakenBack;
   if (!body.told) body.thing.from.reset();
-  body.gone.clear();  // something else stands there by now
-  body.most_faces_gone = 0;
+  forget_gone(body);  // something else stands there by now
 }
 
 bool differ(const std::optional<Outline>& a, const std::optional<Outline>& b, double step_m) {
@@ -153,6 +161,23 @@ bool is_whole(const Body& body, Side side, double resolution_m) {
   return outline && is_whole(body, *outline, side, resolution_m);
 }
 
+bool is_beyond_shown(const Body& gone, std::span<const Point2> places, const GridGeometry& geometry) {
+  const auto& outline = gone.outline(Side::kGone);
+  if (!outline || gone.shown.empty()) return false;
+  int shown = 0;
+  std::size_t beyond = 0;
+  for (const Point2& place : places) {
+    bool is_behind = false;
+    walk_ray(geometry, outline->centre, place, [&](Cell cell, double) {
+      is_behind = gone.shown.before(cell).has_value();
+      return !is_behind;
+    });
+    shown += gone.shown.before(geometry.cell_at(place)) ? 1 : 0;
+    beyond += is_behind ? 1 : 0;
+  }
+  return shown >= kShownCells || 2 * beyond > places.size();
+}
+
 bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& map, double quiet_s) {
   const auto& one = a.outline(side);
   const auto& other = b.outline(side);
@@ -162,8 +187,12 @@ bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& ma
     return false;
   BodyCells both = cells_of(a, side, map);
   const BodyCells more = cells_of(b, side, map);
+  if (both.faces.empty() && more.faces.empty()) return false;  // they are no longer followed
+  if ((both.faces.empty() || more.faces.empty()) && !is_inside_other) return false;
+  if (side == Side::kGone &&
+      (is_beyond_shown(a, more.faces, map.geometry()) || is_beyond_shown(b, both.faces, map.geometry())))
+    return false;
   both.faces.insert(both.faces.end(), more.faces.begin(), more.faces.end());
-  if (both.faces.empty()) return false;  // they are no longer followed
   both.inside.insert(both.inside.end(), more.inside.begin(), more.inside.end());
   const Outline all = side == Side::kCome ? outline_of_come(both) : outline_of_gone(both, map);
   if (share_on_sides(both, all) < kOnSidesShare) return false;
@@ -209,6 +238,11 @@ bool look_at(Body& body, const TrackedScan& tracked) {
   if (++body.looks_through < kLooksThrough) return false;
   contradict(body);
   return true;
+}
+
+bool is_taken(const Body& gone) {
+  return gone.gone.empty() ||
+         static_cast<double>(gone.gone.count()) < kWholeShare * static_cast<double>(gone.most_gone);
 }
 
 bool is_tellable(const Body& body, const ThingsParams& params) {

@@ -46,9 +46,12 @@ struct Body {
   Thing thing;                      ///< id 0: not told yet
   ThingCells come;                  ///< what stands here and did not, and what that closes off
   ThingCells gone;                  ///< what stood here and does not, and the floor that this has shown
+  ThingCells shown;                 ///< surfaces that came into view when it went: its neighbours', never its own
   std::size_t most_faces_come = 0;  ///< cells of its surface, at most so far
   std::size_t most_faces_gone = 0;
+  std::size_t most_gone = 0;       ///< cells of `gone`, at most so far
   std::size_t written = 0;         ///< cells ever owned
+  Timestamp began;                 ///< when it was first seen to have come, or to have gone
   Timestamp grown;                 ///< when its surface last grew, or it went
   std::optional<Thing> told;       ///< as it was told last; nothing: not yet
   bool is_touched = false;         ///< by the revision that is being taken
@@ -82,8 +85,15 @@ void contradict_by(const ChangedMap& step, Body& body);
 /// side of one body, that were seen one after the other. Bodies beside each other are not.
 [[nodiscard]] bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& map, double quiet_s);
 
+/// From the middle of what has gone the way to most of the places leads through what its going has shown, or they are
+/// that: it ended before.
+[[nodiscard]] bool is_beyond_shown(const Body& gone, std::span<const Point2> places, const GridGeometry& geometry);
+
 /// All of its outline is certain: what lies beyond belongs to another body.
 [[nodiscard]] bool is_whole(const Body& body, Side side, double resolution_m);
+
+/// Floor that it has left, and that was seen free, is covered by now: what stands there came later.
+[[nodiscard]] bool is_taken(const Body& gone);
 
 /// Whether it has enough of a surface to be told.
 [[nodiscard]] bool is_tellable(const Body& body, const ThingsParams& params);

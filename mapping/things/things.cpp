@@ -35,12 +35,31 @@ bool is_beyond(const std::vector<CellChange>& cluster, const Outline& outline, c
   return 2 * static_cast<std::size_t>(outside) > cluster.size();
 }
 
+std::vector<Point2> places_of(const std::vector<CellChange>& cluster, const GridGeometry& geometry) {
+  std::vector<Point2> places;
+  for (const CellChange& change : cluster) places.push_back(geometry.centre_of(change.cell));
+  return places;
+}
+
+/// How far the place lies outside of the body's outline, or, of a single face, beside what lies behind that; none yet:
+/// 0.
+double beside_m(const Body& body, Side side, const Point2& place) {
+  const auto& outline = body.outline(side);
+  if (!outline) return 0.0;
+  const Point2 own = inverse({outline->centre.x(), outline->centre.y(), outline->heading_rad}) * place;
+  const double along_m = std::max(0.0, std::abs(own.x()) - 0.5 * outline->length_m - kBeyond_m);
+  const double across_m = std::max(0.0, std::abs(own.y()) - 0.5 * outline->width_m - kBeyond_m);
+  return outline->width_m < kOneFace_m ? along_m : std::max(along_m, across_m);
+}
+
 std::size_t cells_touching(const ThingCells& cells, const std::vector<CellChange>& cluster, int reach_cells) {
   if (common(grown(cells.box(), reach_cells), bounding_box(cluster)).empty()) return 0;
   return static_cast<std::size_t>(std::count_if(cluster.begin(), cluster.end(), [&](const CellChange& change) {
     return cells.has_within(change.cell, reach_cells);
   }));
 }
+
+std::size_t bytes_of(const Body& body) { return body.come.bytes() + body.gone.bytes() + body.shown.bytes(); }
 
 }  // namespace
 
@@ -66,6 +85,7 @@ std::vector<ThingEvent> Things::take(const ChangedMap& changed) {
     add_surfaces(step, left, side);
     add_insides(changed.map.geometry(), left, side);
   }
+  note_shown(step);
   std::vector<ThingEvent> events = told(step);
   drop_tentative(step);
   stay_within_bounds();
@@ -115,7 +135,7 @@ void Things::add_surfaces(const Step& step, const Cells& changes, Side side) {
         continue;
       }
       body = &bodies_.emplace_back();
-      body->thing.first_seen = step.now.time;
+      body->thing.first_seen = body->began = step.now.time;
     }
     own(*body, cluster, side);
     body->grown = step.now.time;
@@ -128,6 +148,8 @@ std::size_t Things::cells_it_grows_by(const Body& body, const Step& step, const 
   if (side == Side::kCome && body.told && !body.thing.at) return 0;  // what is left of one that has gone
   const std::size_t touching = cells_touching(body.cells(side), cluster, step.gap_cells);
   if (touching == 0) return 0;
+  const GridGeometry& geometry = step.now.map.geometry();
+  if (side == Side::kGone && is_beyond_shown(body, places_of(cluster, geometry), geometry)) return 0;
   const auto& outline = body.outline(side);
   const bool grows_no_more = outline && (is_whole(body, side, step.now.map.resolution_m()) ||
                                          seconds(step.now.time - body.grown) > params_.quiet_s);
@@ -157,6 +179,20 @@ Body* Things::body_of(const Step& step, const Cells& cluster, Side side) {
   return best;
 }
 
+void Things::note_shown(const Step& step) {
+  const CellBox changed = bounding_box(step.now.changes);
+  for (Body& body : bodies_) {
+    if (body.gone.empty() || common(grown(body.gone.box(), step.gap_cells), changed).empty()) continue;
+    for (const CellChange& change : step.now.changes) {
+      if (step.now.takes_back) {
+        body.shown.drop(change.cell);
+      } else if (became_surface(change) && body.gone.has_within(change.cell, step.gap_cells)) {
+        body.shown.own(change.cell, change.before);
+      }
+    }
+  }
+}
+
 void Things::add_insides(const GridGeometry& geometry, const Cells& changes, Side side) {
   const CellState before = side == Side::kCome ? CellState::kFree : CellState::kUnknown;
   const CellState after = side == Side::kCome ? CellState::kUnknown : CellState::kFree;
@@ -172,11 +208,11 @@ void Things::add_insides(const GridGeometry& geometry, const Cells& changes, Sid
     std::stable_sort(touching.begin(), touching.end(),
                      [](const Body* a, const Body* b) { return a->grown > b->grown; });
     for (const CellChange& change : cluster) {
-      const auto has_it = [&](const Body* body) {
-        return body->outline(side) && is_inside(*body->outline(side), geometry.centre_of(change.cell), kBeyond_m);
-      };
-      const auto owner = std::find_if(touching.begin(), touching.end(), has_it);
-      own(owner == touching.end() ? *touching.front() : **owner, {&change, 1}, side);
+      const Point2 place = geometry.centre_of(change.cell);
+      const auto owner = std::min_element(touching.begin(), touching.end(), [&](const Body* a, const Body* b) {
+        return beside_m(*a, side, place) < beside_m(*b, side, place);
+      });
+      own(**owner, {&change, 1}, side);
     }
   }
 }
@@ -227,12 +263,13 @@ void Things::drop_tentative(const Step& step) {
 void Things::stay_within_bounds() {
   for (std::size_t bytes = cell_bytes(); bytes > params_.most_cell_bytes; bytes = cell_bytes()) {
     const auto quietest = std::min_element(bodies_.begin(), bodies_.end(), [](const Body& a, const Body& b) {
-      const bool a_has = a.come.bytes() + a.gone.bytes() > 0;
-      const bool b_has = b.come.bytes() + b.gone.bytes() > 0;
+      const bool a_has = bytes_of(a) > 0;
+      const bool b_has = bytes_of(b) > 0;
       return a_has != b_has ? a_has : a.thing.last_seen < b.thing.last_seen;
     });
     quietest->come.clear();
     quietest->gone.clear();
+    quietest->shown.clear();
     if (!quietest->told) bodies_.erase(quietest);
   }
   while (bodies_.size() > params_.most_things) {
@@ -244,7 +281,7 @@ void Things::stay_within_bounds() {
 
 std::size_t Things::cell_bytes() const {
   std::size_t bytes = 0;
-  for (const Body& body : bodies_) bytes += body.come.bytes() + body.gone.bytes();
+  for (const Body& body : bodies_) bytes += bytes_of(body);
   return bytes;
 }
 

@@ -51,6 +51,8 @@ class Things {
   /// The changes that no standing body loses.
   [[nodiscard]] Cells restored(const Step& step);
   void add_surfaces(const Step& step, const Cells& changes, Side side);
+  /// Surfaces that come into view where bodies have gone are their neighbours'.
+  void note_shown(const Step& step);
   void add_insides(const GridGeometry& geometry, const Cells& changes, Side side);
   [[nodiscard]] std::size_t cells_it_grows_by(const Body& body, const Step& step, const Cells& cluster,
                                               Side side) const;

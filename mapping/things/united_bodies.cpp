@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mapping/things/pushed.hpp"
+#include "mapping/things/shifted.hpp"
 #include "mapping/things/things.hpp"
 
 namespace deltamap::mapping::things {
@@ -62,7 +63,10 @@ void take_cells(Body& into, const Body& part) {
   }
   into.most_faces_come += part.most_faces_come;
   into.most_faces_gone += part.most_faces_gone;
+  part.shown.visit([&](Cell cell, CellState before) { into.shown.own(cell, before); });
+  into.most_gone += part.most_gone;
   into.written += part.written;
+  into.began = std::min(into.began, part.began);
   into.grown = std::max(into.grown, part.grown);
   into.has_grown = into.has_grown || part.has_grown;
   if (!into.freed) into.freed = part.freed;
@@ -78,6 +82,19 @@ void take_history(Thing& into, const Thing& part) {
                  std::back_inserter(all));
   if (all.size() > Thing::kMostRevisions) all.erase(all.begin(), all.end() - Thing::kMostRevisions);
   into.revisions = std::move(all);
+}
+
+/// What has gone under what has come, as one body that was shifted.
+std::optional<Pushed> shifted_to(const Body& came, const Body& gone, const OccupancyGrid& map) {
+  const double reach_m = 0.5 * std::hypot(came.thing.at->length_m, came.thing.at->width_m) +
+                         0.5 * std::hypot(gone.thing.from->length_m, gone.thing.from->width_m);
+  if (is_taken(gone) || (came.thing.at->centre - gone.thing.from->centre).norm() > reach_m) return std::nullopt;
+  std::vector<Point2> freed;
+  gone.gone.visit([&](Cell cell, CellState) {
+    if (map.at(cell) == CellState::kFree) freed.push_back(map.geometry().centre_of(cell));
+  });
+  return shifted_body({*came.thing.at, is_whole(came, Side::kCome, map.resolution_m())},
+                      {*gone.thing.from, is_whole(gone, Side::kGone, map.resolution_m())}, freed, map);
 }
 
 }  // namespace
@@ -103,14 +120,16 @@ void Things::join_faces(const ChangedMap& now) {
 void Things::join_pushes(const OccupancyGrid& map) {
   for (auto next = bodies_.begin(); next != bodies_.end();) {
     Body& body = *next++;
-    if (!body.has_grown || !is_tellable(body, params_)) continue;
+    if (!body.is_touched || !is_tellable(body, params_)) continue;
     std::optional<Pushed> pushed;
     const auto other = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& one) {
       if (!one.told || !is_one_end(one.thing) || !is_one_end(body.thing) ||
           one.thing.at.has_value() == body.thing.at.has_value())
         return false;
-      pushed = body.thing.at ? pushed_body(*body.thing.at, *one.thing.from, map)
-                             : pushed_body(*one.thing.at, *body.thing.from, map);
+      const Body& came = body.thing.at ? body : one;
+      const Body& gone = body.thing.at ? one : body;
+      pushed = pushed_body(*came.thing.at, *gone.thing.from, map);
+      if (!pushed) pushed = shifted_to(came, gone, map);
       return pushed.has_value();
     });
     if (other == bodies_.end()) continue;
@@ -127,7 +146,7 @@ void Things::join_pushes(const OccupancyGrid& map) {
 void Things::join_moves() {
   for (auto next = bodies_.begin(); next != bodies_.end();) {
     Body& body = *next++;
-    if (!body.has_grown || !is_tellable(body, params_)) continue;
+    if (!body.is_touched || !is_tellable(body, params_)) continue;
     Body* other = other_part_of(body);
     if (other == nullptr) continue;
     (void)unite(*other, body);
@@ -143,7 +162,8 @@ Body* Things::other_part_of(const Body& body) {
     if (&other == &body || !other.told || other.thing.kind == ThingKind::kTakenBack) continue;
     if (is_the_going_of(body, other)) return &other;
     const bool is_other_end = body.thing.at ? !other.thing.at : !other.thing.from;
-    const double apart_s = std::abs(seconds(body.thing.first_seen - other.grown));
+    const double apart_s =
+        std::min(std::abs(seconds(body.began - other.began)), std::abs(seconds(body.began - other.grown)));
     if (!is_other_end || apart_s > params_.one_look_s) continue;
     const double away_m = (body.thing.outline().centre - other.thing.outline().centre).norm();
     const bool is_near = away_m >= kLeastShift_m && away_m <= nearest_m;

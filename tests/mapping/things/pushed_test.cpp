@@ -54,6 +54,28 @@ TEST_F(PushedBody, StripsThatAreNotParallelBelongToTwoBodies) {
   EXPECT_FALSE(pushed_body(kCame, turned, site.map));
 }
 
+TEST_F(PushedBody, AStripThatWasSeenFromTheSideIsAFaceAtItsEnd) {
+  const Outline face{{6.4, 3.75}, 0.5, 0.05, std::numbers::pi / 2, {false, true, false, false}, {}};
+  const auto pushed = pushed_body(face, kWent, site.map);
+  ASSERT_TRUE(pushed);
+  expect_outline(pushed->from, kOld);
+  expect_outline(pushed->at, kNew);
+  Outline beyond = face;
+  beyond.centre.x() += 0.5;
+  EXPECT_FALSE(pushed_body(beyond, kWent, site.map)) << "it belongs to a neighbour";
+}
+
+TEST_F(PushedBody, IsFoundWhenTheFloorOfItsOldPlaceHasCome) {
+  site.box(kOld).begin_with_what_is_drawn();
+  site.south(kNew).fill({4.0, 3.5, 4.0, 3.95}, CellState::kOccupied).fill({6.4, 3.5, 6.4, 3.95}, CellState::kOccupied);
+  ASSERT_EQ(site.fill({4.05, 3.55, 6.35, 3.95}, CellState::kUnknown).revision(10.0).size(), 1u);
+  site.clear({4.0, 6.0, 6.4, 6.0}).revision(300.0);
+  EXPECT_EQ(site.things.all().size(), 2u) << "how far it has gone is not known";
+  site.clear({4.05, 5.55, 6.35, 5.95}).revision(302.0);
+  ASSERT_EQ(site.things.all().size(), 1u);
+  EXPECT_EQ(site.things.all()[0].kind, ThingKind::kMoved);
+}
+
 TEST_F(PushedBody, FloorBetweenThemIsNoBody) {
   EXPECT_FALSE(pushed_body(kCame, kWent, site.fill(kOld, CellState::kFree).next));
 }

@@ -68,6 +68,59 @@ TEST(Things, OfABodyWhoseFrontAloneWasKnownTheFloorBehindTellsTheDepth) {
   EXPECT_NEAR(told[0].thing.from->width_m, 2.0, 2 * kCells_m);
 }
 
+// Two containers side by side in a row whose fronts alone are known, the wall behind them.
+constexpr Drawn kLeft{2.0, 0.05, 4.4, 2.4};
+constexpr Drawn kRight{4.4, 0.05, 6.8, 2.4};
+
+class Row : public testing::Test {
+ protected:
+  Row() {
+    site.fill({0.05, 0.05, 11.9, 2.4}, CellState::kUnknown).fill({0.05, 2.4, 11.9, 2.4}, CellState::kOccupied);
+    site.begin_with_what_is_drawn();
+  }
+  DrawnSite site;
+};
+
+TEST_F(Row, ANeighbourWhoseSideWasShownGoesAsAnother) {
+  site.clear({2.05, 0.05, 4.35, 2.4}).west(kLeft).east(kLeft);
+  ASSERT_EQ(site.revision(10.0).size(), 1u);
+  const auto told = site.clear({4.4, 0.05, 6.75, 2.4}).east(kRight).revision(60.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.id, 2u);
+  expect_outline(*told[0].thing.from, kRight);
+  expect_outline(*site.things.all()[0].from, kLeft);
+}
+
+TEST_F(Row, ANeighbourBehindASideThatWasShownInPartGoesAsAnother) {
+  site.clear({2.05, 1.2, 4.35, 2.4}).fill({4.4, 1.2, 4.4, 2.35}, CellState::kOccupied);  // half as deep as it was
+  ASSERT_EQ(site.revision(10.0).size(), 1u);
+  const auto told = site.clear({4.6, 1.2, 6.75, 2.4}).revision(60.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.id, 2u) << "the side still stands between them";
+}
+
+TEST_F(Row, ANeighbourOfWhatHasBeenReplacedGoesAsAnother) {
+  site.clear({2.05, 0.05, 4.35, 2.4}).revision(10.0);
+  site.fill({2.05, 0.05, 4.35, 2.35}, CellState::kUnknown).fill({2.0, 2.4, 4.4, 2.4}, CellState::kOccupied);
+  ASSERT_EQ(site.revision(60.0).size(), 1u) << "another stands there";
+  const auto told = site.clear({4.45, 0.05, 6.75, 2.4}).revision(120.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.id, 3u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kGone);
+}
+
+TEST(Things, FloorThatIsClosedOffAtOnceBelongsToTheFaceThatItLiesBehind) {
+  DrawnSite site;
+  site.fill({0.05, 3.0, 1.95, 3.0}, CellState::kOccupied).fill({6.85, 3.0, 11.9, 3.0}, CellState::kOccupied);
+  site.begin_with_what_is_drawn();
+  site.fill({2.0, 3.0, 4.2, 3.0}, CellState::kOccupied).revision(10.0);
+  site.fill({4.6, 3.0, 6.8, 3.0}, CellState::kOccupied).revision(400.0);
+  site.fill({2.0, 0.05, 6.8, 2.95}, CellState::kUnknown).revision(410.0);
+  ASSERT_EQ(site.things.all().size(), 2u);
+  EXPECT_NEAR(site.things.all()[0].at->centre.x(), 3.1, 0.3);
+  EXPECT_NEAR(site.things.all()[1].at->centre.x(), 5.7, 0.3);
+}
+
 TEST(Things, WhatAppearedGoesUnderTheSameId) {
   DrawnSite site;
   site.box(kBox).revision(10.0);

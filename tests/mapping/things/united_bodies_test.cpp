@@ -39,6 +39,19 @@ TEST(UnitedBodies, WhatComesLongAfterAnotherWentHasNotMoved) {
   EXPECT_EQ(told[0].thing.id, 2u);
 }
 
+TEST(UnitedBodies, EndsThatBeganAtTheSameTimeAreOfOneMoveHoweverLateTheyAreWhole) {
+  DrawnSite site;
+  const Drawn aside{4.0, 5.0, 6.4, 6.6};
+  site.box(kBox).begin_with_what_is_drawn();
+  site.clear({4.0, 4.0, 6.0, 5.6}).revision(10.0);  // its eastern side is hidden
+  site.fill({5.4, 6.6, 6.4, 6.6}, CellState::kOccupied).fill({6.4, 5.8, 6.4, 6.6}, CellState::kOccupied).revision(12.0);
+  site.clear({6.05, 4.0, 6.4, 5.6}).revision(300.0);
+  EXPECT_EQ(site.things.all().size(), 2u) << "of two sizes";
+  site.box(aside).revision(310.0);
+  ASSERT_EQ(site.things.all().size(), 1u);
+  EXPECT_EQ(site.things.all()[0].kind, ThingKind::kMoved);
+}
+
 TEST(UnitedBodies, ABoxOfAnotherSizeHasNotMoved) {
   DrawnSite site;
   site.box(kBox).begin_with_what_is_drawn();
