@@ -23,6 +23,7 @@ struct NetworkSums {
 NetworkSums sums_over_network(const std::vector<Pose2>& poses, std::span<const PoseLink> links,
                               const std::vector<char>& is_kept, std::span<const PoseAnchor> anchors) {
   NetworkSums sums;
+  sums.blocks.reserve(3 * links.size() + anchors.size());
   sums.right_side = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * poses.size()));
   const auto right_side_of = [&](std::uint32_t pose) {
     return sums.right_side.segment<3>(3 * static_cast<Eigen::Index>(pose));

@@ -222,11 +222,6 @@ void CorrelationField::Level::lay_around(Cell end) {
   }
 }
 
-Cell CorrelationField::cell_at(const Point2& place) const {
-  return {rounded_down((place.x() - corner_.x()) / resolution_m_),
-          rounded_down((place.y() - corner_.y()) / resolution_m_)};
-}
-
 CorrelationField::Level CorrelationField::Level::coarser(int reach) const {
   Level made{width_ + reach, height_ + reach, border_ + reach};
   // The same place of the finer level lies `reach` further in; around it there is nothing.

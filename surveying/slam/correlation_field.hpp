@@ -24,7 +24,10 @@ class CorrelationField {
   [[nodiscard]] double resolution_m() const { return resolution_m_; }
   [[nodiscard]] int levels() const { return static_cast<int>(levels_.size()); }
   /// The cell of a place, counted from the field's corner; any place has one.
-  [[nodiscard]] Cell cell_at(const Point2& place) const;
+  [[nodiscard]] Cell cell_at(const Point2& place) const {
+    return {rounded_down((place.x() - corner_.x()) / resolution_m_),
+            rounded_down((place.y() - corner_.y()) / resolution_m_)};
+  }
 
   /// Of each cell the largest value of the 2^level cells to the right of and above it, itself included; 0 to 255.
   class Level {

@@ -83,14 +83,17 @@ std::vector<LoopClosing::Candidate> LoopClosing::candidates(std::uint32_t node) 
   return chosen;
 }
 
-/// One that is believed already, to the same place of that way.
+/// One that is believed already, between the same places of both ways: another would tell nothing new.
 std::optional<mapping::alignment::PoseLink> LoopClosing::loop_between(std::uint32_t other, std::uint32_t node) const {
   const Keyframe& there = survey_.keyframes[other];
-  for (const std::uint32_t place : survey_.links_of[node]) {
-    const mapping::alignment::PoseLink& link = survey_.links[place];
-    if (!link.may_drop || link.to != node) continue;
-    const Keyframe& of = survey_.keyframes[link.from];
-    if (of.drive == there.drive && std::abs(of.driven_m - there.driven_m) < kEachM) return link;
+  const std::uint32_t last = on_by(survey_, node, kEachM);
+  for (std::uint32_t near = back_by(survey_, node, kEachM); near <= last; ++near) {
+    for (const std::uint32_t place : survey_.links_of[near]) {
+      const mapping::alignment::PoseLink& link = survey_.links[place];
+      if (!link.may_drop || link.to != near) continue;
+      const Keyframe& of = survey_.keyframes[link.from];
+      if (of.drive == there.drive && std::abs(of.driven_m - there.driven_m) < 2.0 * kEachM) return link;
+    }
   }
   return std::nullopt;
 }

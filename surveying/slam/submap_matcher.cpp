@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/geometry/points_in_map.hpp"
 #include "core/geometry/pose_spread.hpp"
 
 namespace deltamap::surveying::slam {
@@ -79,13 +80,50 @@ class PlacesOfCells {
   std::vector<Slot> slots_;
 };
 
-/// Of each table cell the point next to its middle: passes over the same surface leave dozens.
+/// Places near a scan's ends, in squares: no other surface counts for the scan there.
+class NearEnds {
+ public:
+  NearEnds(std::span<const Point2> ends, const Pose2& submap_from_scan) {
+    const PointsInMap in_submap{submap_from_scan};
+    std::vector<Point2> placed;
+    placed.reserve(ends.size());
+    for (const Point2& end : ends) placed.push_back(in_submap(end));
+    const SearchWindow around = window_around(placed);
+    const double margin_m = (kNearSquares + 1) * kNearSquareM;
+    const int side = rounded_down(2.0 * (around.position_m + margin_m) / kNearSquareM) + 1;
+    squares_ = {side, side, kNearSquareM, around.centre.position() - Point2::Constant(around.position_m + margin_m)};
+    is_near_.resize(squares_.cell_count(), 0);
+    std::vector<char> is_marked(squares_.cell_count(), 0);
+    for (const Point2& end : placed) {
+      const Cell cell = squares_.cell_at(end);
+      if (std::exchange(is_marked[squares_.index_of(cell)], 1) != 0) continue;
+      for (int row = cell.row - kNearSquares; row <= cell.row + kNearSquares; ++row) {
+        for (int column = cell.column - kNearSquares; column <= cell.column + kNearSquares; ++column) {
+          is_near_[squares_.index_of({column, row})] = 1;
+        }
+      }
+    }
+  }
+  [[nodiscard]] bool has(const Point2& place) const {
+    const Cell cell = squares_.cell_at(place);
+    return squares_.contains(cell) && is_near_[squares_.index_of(cell)] != 0;
+  }
+
+ private:
+  static constexpr double kNearSquareM = 0.5;
+  static constexpr int kNearSquares = 2;  // a metre: the lattice is off by a cell, where ends are far by some
+  GridGeometry squares_;
+  std::vector<char> is_near_;
+};
+
+/// Of each table cell near the ends the point next to its middle: passes over the same surface leave dozens.
 std::vector<mapping::registration::SurfacePoint> one_a_cell(
-    const std::vector<mapping::registration::SurfacePoint>& points) {
+    const std::vector<mapping::registration::SurfacePoint>& points, const NearEnds& near) {
   PlacesOfCells places{points.size()};
   std::vector<mapping::registration::SurfacePoint> kept;
   std::vector<double> off2;
   for (const mapping::registration::SurfacePoint& point : points) {
+    if (!near.has(point.position)) continue;
     const Point2 in_table = point.position / kTableCellM;
     const Cell cell{rounded_down(in_table.x()), rounded_down(in_table.y())};
     const double off = (in_table - Point2{cell.column + 0.5, cell.row + 0.5}).squaredNorm();
@@ -128,7 +166,7 @@ SubmapMatcher::SubmapMatcher(Submap submap, double reach_m)
 std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, double range_deviation_m,
                                                 const SearchWindow& window,
                                                 const mapping::registration::PoseBelief& known,
-                                                const SubmapMatchParams& params) {
+                                                const SubmapMatchParams& params) const {
   const std::vector<Point2> some = evenly(ends);
   auto found = best_match(field_, some, window, params.least_score, params.ambiguous_share);
   if (!found || found->elsewhere > 0.0) return std::nullopt;
@@ -138,10 +176,11 @@ std::optional<SubmapMatch> SubmapMatcher::match(std::span<const Point2> ends, do
     found->field_from_scan = window.centre;
     found->is_at_rim = false;
   }
-  if (!surface_) surface_.emplace(one_a_cell(points_), kTableCellM, kReachM);
+  const mapping::registration::NearestSurface surface{one_a_cell(points_, {ends, found->field_from_scan}), kTableCellM,
+                                                      kReachM};
   // Ends share errors: what was known before weighs as much more.
   const mapping::registration::Registration refined = mapping::registration::registration(
-      ends, *surface_, found->field_from_scan, {known.pose, known.information / kIndependentShare},
+      ends, surface, found->field_from_scan, {known.pose, known.information / kIndependentShare},
       {.first_reach_m = kReachM, .last_reach_m = kLastReachM, .point_deviation_m = range_deviation_m});
   const Pose2 correction = motion_between(found->field_from_scan, refined.reference_from_moving);
   const bool fits = refined.settled &&

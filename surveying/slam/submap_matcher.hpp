@@ -45,13 +45,12 @@ class SubmapMatcher {
   [[nodiscard]] std::optional<SubmapMatch> match(std::span<const Point2> ends, double range_deviation_m,
                                                  const SearchWindow& window,
                                                  const mapping::registration::PoseBelief& known,
-                                                 const SubmapMatchParams& params);
+                                                 const SubmapMatchParams& params) const;
 
  private:
   SearchWindow everywhere_;
   CorrelationField field_;
-  std::vector<mapping::registration::SurfacePoint> points_;       // moved into the table
-  std::optional<mapping::registration::NearestSurface> surface_;  // once a scan fits by correlation
+  std::vector<mapping::registration::SurfacePoint> points_;
 };
 
 }  // namespace deltamap::surveying::slam
