@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "core/geometry/points_in_map.hpp"
+#include "mapping/bays/straight_faces.hpp"
 
 namespace deltamap::mapping::bays {
 namespace {
@@ -23,10 +26,13 @@ constexpr std::int8_t kFree = -2;
 constexpr std::int8_t kTaken = 4;  // from surely free on 1.4 s of looks: a person walks on
 constexpr std::int8_t kSurelyTaken = 6;
 constexpr std::uint8_t kShadowLooks = 2;
-constexpr double kBody_m = 1.0;  // across: no person, and no two beside each other
+constexpr double kBody_m = 1.6;  // across: larger than three people beside each other
+constexpr int kEndOnFace = 2;    // looks that an end on a straight face counts for: people have none
+constexpr std::uint8_t kFaceLooks = 2;
+constexpr std::uint8_t kMostFaceLooks = 4;
 constexpr std::uint32_t kMostWindow_ds = 100;
 
-enum Mark : std::uint8_t { kWentThrough = 1, kEnded = 2, kBehindBody = 4 };
+enum Mark : std::uint8_t { kWentThrough = 1, kEnded = 2, kBehindBody = 4, kOnFace = 8 };
 
 /// Distance of a point from the polygon's sides.
 double distance_from_sides(const Polygon& polygon, const Point2& point) {
@@ -99,8 +105,14 @@ void BayFloor::forget() {
     cell.free_ds = 0;
     cell.evidence = 0;
     cell.shadows = 0;
+    cell.faces = 0;
     cell.is_body = false;
+    cell.is_risen = false;
   }
+}
+
+void BayFloor::take_as_told() {
+  for (FloorCell& cell : cells_) cell.is_risen = false;
 }
 
 BayFloor::Path BayFloor::path_of(const Point2& from, const Point2& direction, double range_m) const {
@@ -148,9 +160,9 @@ BayFloor::Path BayFloor::path_of(const Point2& from, const Point2& direction, do
   return path;
 }
 
-void BayFloor::mark_beam(const Point2& from, const Point2& end) {
+std::optional<std::size_t> BayFloor::mark_beam(const Point2& from, const Point2& end) {
   const double range_m = (end - from).norm();
-  if (range_m <= 0.0) return;
+  if (range_m <= 0.0) return std::nullopt;
   const Path path = path_of(from, (end - from) / range_m, range_m);
   const auto cell_of = [&](int step) -> FloorCell& {
     return cells_[static_cast<std::size_t>(path.steps[static_cast<std::size_t>(step)].cell)];
@@ -159,39 +171,93 @@ void BayFloor::mark_beam(const Point2& from, const Point2& end) {
   while (first < path.count && !cell_of(first).is_inside) ++first;
   int last_core = path.count - 1;
   while (last_core >= first && !cell_of(last_core).is_core) --last_core;
-  if (last_core < first) return;  // it touches the rim alone
+  if (last_core < first) return std::nullopt;  // it touches the rim alone
   const double enters_m = path.steps[static_cast<std::size_t>(first)].from_m;
-  if (range_m < enters_m - kRim_m) return;  // something before the bay covers it
+  if (range_m < enters_m - kRim_m) return std::nullopt;  // something before the bay covers it
   int hit = first;
   while (hit <= last_core && path.steps[static_cast<std::size_t>(hit)].to_m <= range_m) ++hit;
   const bool ends_inside = hit <= last_core;
   for (int i = first; i <= std::min(hit, last_core); ++i) {
     if (path.steps[static_cast<std::size_t>(i)].to_m <= range_m - kFreeBefore_m) cell_of(i).marks |= kWentThrough;
   }
-  if (!ends_inside) return;
+  if (!ends_inside) return std::nullopt;
   FloorCell& face = cell_of(hit);
   face.marks |= kEnded;
-  if (!face.is_body) return;
-  for (int i = hit + 1; i <= last_core; ++i) {
+  for (int i = hit + 1; face.is_body && i <= last_core; ++i) {
     FloorCell& behind = cell_of(i);
     if (behind.free_ds <= face.since_ds) behind.marks |= kBehindBody;  // else it was free, seen from elsewhere
   }
+  return static_cast<std::size_t>(path.steps[static_cast<std::size_t>(hit)].cell);
+}
+
+/// Of beams that follow each other and all end in the bay.
+struct BayFloor::BeamEnds {
+  std::vector<Point2> in_bay;
+  std::vector<std::size_t> cells;
+};
+
+void BayFloor::mark_faces(BeamEnds& ends) {
+  for (const StraightFace& face : straight_faces(ends.in_bay)) {
+    for (std::size_t i = face.first; i < face.last; ++i) cells_[ends.cells[i]].marks |= kOnFace;
+  }
+  ends.in_bay.clear();
+  ends.cells.clear();
+}
+
+/// A body through which beams go has gone, and its shadow with it.
+void BayFloor::drop_lost_shadows() {
+  const bool is_lost = std::any_of(cells_.begin(), cells_.end(), [](const FloorCell& cell) {
+    return cell.is_body && cell.evidence <= kTaken && (cell.marks & (kWentThrough | kEnded)) == kWentThrough;
+  });
+  if (!is_lost) return;
+  for (FloorCell& cell : cells_) {
+    if ((cell.marks & kBehindBody) == 0) cell.shadows = 0;
+  }
+}
+
+/// A pose that is a little off moves the face of a load by a cell: that is no new one.
+bool BayFloor::is_beside_what_stood(std::size_t index) const {
+  const int column = static_cast<int>(index) % columns_;
+  const int row = static_cast<int>(index) / columns_;
+  for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
+    for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
+      const FloorCell& beside = cells_[static_cast<std::size_t>(r * columns_ + c)];
+      if (beside.is_gathered && !beside.is_risen) return true;
+    }
+  }
+  return false;
+}
+
+void BayFloor::take_end(std::size_t index, std::uint32_t time_ds) {
+  FloorCell& cell = cells_[index];
+  const bool is_on_face = (cell.marks & kOnFace) != 0;
+  cell.faces = static_cast<std::uint8_t>(std::clamp<int>(cell.faces + (is_on_face ? 1 : -1), 0, kMostFaceLooks));
+  const int evidence = cell.evidence + (is_on_face ? kEndOnFace : 1);
+  if (cell.evidence < kTaken && evidence >= kTaken) {
+    cell.since_ds = time_ds;
+    cell.is_risen = cell.free_ds > 0 && !is_beside_what_stood(index);
+  }
+  cell.evidence = static_cast<std::int8_t>(std::min<int>(evidence, kSurelyTaken));
+  if (cell.evidence >= kTaken) cell.seen_ds = time_ds;
 }
 
 void BayFloor::take_marks(std::uint32_t time_ds) {
-  for (FloorCell& cell : cells_) {
+  drop_lost_shadows();
+  for (std::size_t index = 0; index < cells_.size(); ++index) {
+    FloorCell& cell = cells_[index];
     const std::uint8_t marks = cell.marks;
     if (marks == 0) continue;
-    cell.marks = 0;
     if ((marks & kEnded) != 0) {
-      if (cell.evidence < kTaken && cell.evidence + 1 >= kTaken) cell.since_ds = time_ds;
-      cell.evidence = static_cast<std::int8_t>(std::min<int>(cell.evidence + 1, kSurelyTaken));
-      if (cell.evidence >= kTaken) cell.seen_ds = time_ds;
+      take_end(index, time_ds);
     } else if ((marks & kWentThrough) != 0) {
       cell.evidence = static_cast<std::int8_t>(std::max<int>(cell.evidence - 1, kSurelyFree));
       cell.shadows = 0;
+      cell.faces = 0;
       cell.free_ds = time_ds;
-      if (cell.evidence <= kFree) cell.seen_ds = time_ds;
+      if (cell.evidence <= kFree) {
+        cell.seen_ds = time_ds;
+        cell.is_risen = false;
+      }
     } else if (cell.evidence < kTaken) {
       // What was free before the body came says nothing of what is behind it now.
       if (cell.evidence < 0) cell.evidence = static_cast<std::int8_t>(std::min<int>(cell.evidence + 2, 0));
@@ -200,6 +266,7 @@ void BayFloor::take_marks(std::uint32_t time_ds) {
     } else {
       cell.seen_ds = time_ds;
     }
+    cell.marks = 0;
   }
 }
 
@@ -243,23 +310,37 @@ BayFloor::Cluster BayFloor::cluster_from(int start) {
   return cluster;
 }
 
-/// Ends of beams that touch each other are one body, where it is too large for a person.
+/// Ends of beams that touch each other are one body, where a straight face is among them, or it is too large for
+/// people.
 void BayFloor::find_bodies() {
   for (FloorCell& cell : cells_) cell.is_body = cell.is_gathered = false;
   for (int start = 0; start < columns_ * rows_; ++start) {
     if (cells_[static_cast<std::size_t>(start)].evidence < kTaken) continue;
     const Cluster cluster = cluster_from(start);
-    if (cluster.count == 0 || cluster.across_m(edge_m_) < kBody_m) continue;
-    for (std::size_t i = 0; i < cluster.count; ++i) cells_[static_cast<std::size_t>(cluster.members[i])].is_body = true;
+    const std::span members{cluster.members.data(), cluster.count};
+    const bool has_face = std::any_of(members.begin(), members.end(), [&](std::int16_t member) {
+      return cells_[static_cast<std::size_t>(member)].faces >= kFaceLooks;
+    });
+    if (cluster.count == 0 || (!has_face && cluster.across_m(edge_m_) < kBody_m)) continue;
+    for (const std::int16_t member : members) cells_[static_cast<std::size_t>(member)].is_body = true;
   }
 }
 
 void BayFloor::look(const TrackedScan& tracked, std::size_t first, std::size_t last, std::uint32_t time_ds) {
   const PointsInMap in_bay{bay_from_map_ * tracked.estimate.map_from_robot};
+  BeamEnds ends;
   for (std::size_t i = first; i < last; ++i) {
-    if (tracked.scan.beams[i].kind != BeamKind::kRange) continue;
-    mark_beam(in_bay(tracked.rays[i].origin), in_bay(tracked.rays[i].end));
+    std::optional<std::size_t> cell;
+    const Point2 end = in_bay(tracked.rays[i].end);
+    if (tracked.scan.beams[i].kind == BeamKind::kRange) cell = mark_beam(in_bay(tracked.rays[i].origin), end);
+    if (!cell) {
+      mark_faces(ends);
+      continue;
+    }
+    ends.in_bay.push_back(end);
+    ends.cells.push_back(*cell);
   }
+  mark_faces(ends);
   take_marks(time_ds);
   find_bodies();
 }
@@ -272,17 +353,25 @@ bool BayFloor::is_known(const FloorCell& cell, std::uint32_t time_ds, std::uint3
 FloorCounts BayFloor::counts(std::uint32_t time_ds, std::uint32_t window_ds) const {
   FloorCounts counts;
   counts.cells = core_cells_;
+  std::uint32_t risen_ds = std::numeric_limits<std::uint32_t>::max();
+  for (const FloorCell& cell : cells_) {
+    if (cell.is_risen && cell.is_body) risen_ds = std::min(risen_ds, cell.since_ds);
+  }
+  const bool has_risen = risen_ds != std::numeric_limits<std::uint32_t>::max();
   for (const FloorCell& cell : cells_) {
     counts.body = counts.body || cell.is_body;
+    counts.risen += cell.is_risen && cell.is_body && cell.faces >= kFaceLooks ? 1 : 0;
     const bool is_recent = cell.seen_ds > 0 && time_ds - cell.seen_ds <= window_ds;
     counts.small += cell.is_core && is_recent && cell.evidence >= kTaken && !cell.is_body ? 1 : 0;
     if (!is_known(cell, time_ds, window_ds)) continue;
-    if (cell.evidence <= kFree)
+    if (cell.evidence <= kFree) {
       ++counts.free;
-    else if (cell.is_body)
+      counts.free_since += !has_risen || cell.free_ds >= risen_ds ? 1 : 0;
+    } else if (cell.is_body) {
       ++counts.taken;
-    else
+    } else {
       ++counts.shadowed;
+    }
   }
   return counts;
 }

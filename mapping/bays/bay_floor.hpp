@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The floor of one bay in cells, and what the beams of the last looks say of each: beams went through it, ended in it,
 // or it lies behind a face that stands. A body that passes leaves nothing behind: a cell changes its mind by several
-// looks, and what is as small as a person is no load.
+// looks, and what has no straight face and is no larger than two people is no load.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/messages.hpp"
@@ -14,12 +16,14 @@ namespace deltamap::mapping::bays {
 
 /// Cells of the floor without its rim, which neighbours' walls and pose errors reach, as seen within the last seconds.
 struct FloorCounts {
-  int cells = 0;      ///< of that floor
-  int free = 0;       ///< beams went through
-  int taken = 0;      ///< beams ended there, at a body
-  int shadowed = 0;   ///< behind a body, and never seen free since it stands
-  int small = 0;      ///< beams ended there, at what may be a person
-  bool body = false;  ///< one stands there, or on the rim
+  int cells = 0;       ///< of that floor
+  int free = 0;        ///< beams went through
+  int free_since = 0;  ///< of them: also since a face has risen; all where none has
+  int taken = 0;       ///< beams ended there, at a body
+  int shadowed = 0;    ///< behind a body, and never seen free since it stands
+  int small = 0;       ///< beams ended there, at what may be a person
+  int risen = 0;       ///< of a straight face where the floor was free, apart from what stood, since the state was told
+  bool body = false;   ///< one stands there, or on the rim
 
   [[nodiscard]] int known() const { return free + taken + shadowed; }
 };
@@ -34,6 +38,8 @@ class BayFloor {
   [[nodiscard]] FloorCounts counts(std::uint32_t time_ds, std::uint32_t window_ds) const;
   /// At least `least_cells` of what counts() calls known have been seen then or later, tenths of a second.
   [[nodiscard]] std::uint32_t seen_since_ds(std::uint32_t time_ds, std::uint32_t window_ds, int least_cells) const;
+  /// Of what stands now a state is told: it has risen no more.
+  void take_as_told();
   /// Nothing has been seen.
   void forget();
 
@@ -49,18 +55,26 @@ class BayFloor {
     std::int8_t evidence = 0;    // negative: beams go through, positive: they end here
     std::uint8_t shadows = 0;    // looks in which it lay behind a body, since it was seen free
     std::uint8_t marks = 0;      // of this look
+    std::uint8_t faces = 0;      // looks in which ends here lay on a straight face, less those in which they did not
     bool is_inside = false;
     bool is_core = false;  // not on the rim
     bool is_body = false;
-    bool is_gathered = false;  // into a cluster, of this look
+    bool is_risen = false;     // as FloorCounts::risen, of any ends
+    bool is_gathered = false;  // into a cluster, of the newest look
   };
   struct Path;
   struct Cluster;
 
   /// None where the beam ends clearly before the bay.
   [[nodiscard]] Path path_of(const Point2& from, const Point2& direction, double range_m) const;
-  void mark_beam(const Point2& from, const Point2& end);
+  /// The cell that it ends in.
+  std::optional<std::size_t> mark_beam(const Point2& from, const Point2& end);
+  struct BeamEnds;
+  void mark_faces(BeamEnds& ends);
+  void drop_lost_shadows();
+  void take_end(std::size_t index, std::uint32_t time_ds);
   void take_marks(std::uint32_t time_ds);
+  [[nodiscard]] bool is_beside_what_stood(std::size_t index) const;
   /// Of no cells where no beam ends there, or it belongs to another already.
   [[nodiscard]] Cluster cluster_from(int start);
   void find_bodies();

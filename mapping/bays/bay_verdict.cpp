@@ -10,14 +10,15 @@ namespace {
 constexpr double kSeenOfEmpty = 0.75;  // of the floor: what could hide in the rest is no load
 constexpr double kSeenOfTaken = 0.7;
 constexpr double kFull = 0.8;           // of all its floor is taken: it is full,
-constexpr double kFullAfterAll = 0.95;  // what was partly full is not, for a load throws a long shadow,
+constexpr double kFullAfterAll = 0.95;  // what was partly full is not, for a load throws a long shadow
+constexpr int kRisen = 3;               // cells: unless another load stands where the floor was free;
 constexpr double kStaysFull = 0.7;      // and stays so
 constexpr double kFreeOfFull = 0.1;     // of all its floor is seen free: from there on it is partly full
 constexpr double kStaysFullFree = 0.15;
 constexpr double kPartly = 0.1;  // share from which on it is not empty,
 constexpr double kStaysPartly = 0.06;
 constexpr double kAgainstFull = 0.4;   // free floor that no full bay has
-constexpr double kAgainstEmpty = 0.2;  // taken floor that no empty bay has
+constexpr double kAgainstEmpty = 0.2;  // taken floor that no empty bay has, though its neighbours' loads throw shadows
 constexpr double kShadowCounts = 0.8;  // as seen
 
 double share_of(int cells, const FloorCounts& counts) {
@@ -40,15 +41,16 @@ int least_known(const FloorCounts& counts, BayState state) {
 }
 
 std::optional<BayState> shown_state(const FloorCounts& counts, BayState so_far) {
-  const double share = taken_share(counts);
-  const bool is_taken = counts.body && share >= (so_far == BayState::kPartly ? kStaysPartly : kPartly);
+  const double least_share = counts.taken == 0 ? kAgainstEmpty : so_far == BayState::kPartly ? kStaysPartly : kPartly;
+  const bool is_taken = counts.body && taken_share(counts) >= least_share;
   if (!is_taken && counts.small > 0) return std::nullopt;  // somebody, or a load that is seen from its narrow side
   if (!is_taken && counts.free >= least_known(counts, BayState::kEmpty)) return BayState::kEmpty;
   if (!is_taken || counts.known() < least_known(counts, BayState::kPartly)) return std::nullopt;
   const double taken = share_of(counts.taken + counts.shadowed, counts);
   const bool is_full = so_far == BayState::kFull;
-  if (share_of(counts.free, counts) >= (is_full ? kStaysFullFree : kFreeOfFull)) return BayState::kPartly;
-  const double least = is_full ? kStaysFull : so_far == BayState::kPartly ? kFullAfterAll : kFull;
+  if (share_of(counts.free_since, counts) >= (is_full ? kStaysFullFree : kFreeOfFull)) return BayState::kPartly;
+  const bool is_same_load = so_far == BayState::kPartly && counts.risen < kRisen;
+  const double least = is_full ? kStaysFull : is_same_load ? kFullAfterAll : kFull;
   return taken >= least ? std::optional{BayState::kFull} : std::nullopt;
 }
 

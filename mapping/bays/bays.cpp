@@ -18,7 +18,6 @@ constexpr std::uint32_t kWindow_ds = 100;  // what was seen earlier is of anothe
 constexpr double kBreak_s = 2.0;           // without a look: a candidate begins anew
 constexpr int kLeastLooks = 4;
 constexpr double kLasts_s = 0.8;
-constexpr double kPartlyLasts_s = 1.4;  // a full bay is partly seen at first
 constexpr double kDoubtLasts_s = 3.0;
 
 /// The beams of a scan that may meet a circle: [first, last).
@@ -46,10 +45,7 @@ bool is_sharp(const Estimate& estimate) {
   return deviation.position_m <= kMostDeviation_m && deviation.heading_rad <= kMostDeviation_rad;
 }
 
-double lasts_s(BayState state) {
-  if (state == BayState::kUnknown) return kDoubtLasts_s;
-  return state == BayState::kPartly ? kPartlyLasts_s : kLasts_s;
-}
+double lasts_s(BayState state) { return state == BayState::kUnknown ? kDoubtLasts_s : kLasts_s; }
 
 }  // namespace
 
@@ -130,10 +126,12 @@ void Bays::judge(std::size_t bay, Timestamp now, std::vector<BayEvent>& events) 
       (watch.candidate_looks < kLeastLooks || seconds(now - watch.candidate_since) < lasts_s(watch.candidate)))
     return;
   const BayState before = status.state;
+  if (is_new && watch.candidate != BayState::kUnknown) watch.floor.take_as_told();
   if (is_new) status = {.state = watch.candidate, .seen = status.seen, .since = watch.candidate_since};
   if (shown) {
     const std::uint32_t seen_ds = watch.floor.seen_since_ds(now_ds, kWindow_ds, least_known(counts, status.state));
-    const Timestamp seen = now - duration_from_seconds(0.1 * (now_ds - seen_ds));
+    const Timestamp looked_at = now - duration_from_seconds(0.1 * (now_ds - seen_ds));
+    const Timestamp seen = std::max(looked_at, status.since.value_or(looked_at));  // before that it was another state
     status.seen = is_new || !status.seen ? seen : std::max(*status.seen, seen);
     status.share = taken_share(counts);
     status.confidence = confidence_in(counts);

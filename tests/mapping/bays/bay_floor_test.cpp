@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/bays/bay_floor.hpp"
 
+#include <cmath>
+
 #include "tests/mapping/bays/seen_bays.hpp"
 
 namespace deltamap::mapping::bays {
@@ -45,6 +47,52 @@ TEST_F(BayFloorTest, WhatIsSmallIsNoBody) {
   see(floor, kBefore, 100);
   EXPECT_FALSE(counts(floor).body);
   EXPECT_GT(counts(floor).small, 0);
+}
+
+TEST_F(BayFloorTest, APalletIsABodyFromItsNarrowSideAndPeopleBesideEachOtherAreNone) {
+  BayFloor pallet{square(kBay, kSide_m)};
+  rebuild({{kBay + Point2{0.8, 0.6}, {0.8, 1.2}}});
+  see(pallet, kBefore, 20);
+  EXPECT_TRUE(counts(pallet).body);
+  BayFloor people{square(kBay, kSide_m)};
+  std::vector<Placed> strips;  // two of 0.5 m
+  for (const double middle_m : {0.9, 1.4}) {
+    for (double off_m = -0.25; off_m < 0.24; off_m += 0.05) {
+      const double half_m = std::sqrt(std::max(0.0, 0.0625 - std::pow(off_m + 0.025, 2)));
+      strips.push_back({kBay + Point2{middle_m + off_m, 0.8 - half_m}, {0.05, 2.0 * half_m}});
+    }
+  }
+  rebuild(strips);
+  see(people, kBefore, 100);
+  EXPECT_FALSE(counts(people).body);
+  EXPECT_GT(counts(people).small, 0);
+}
+
+TEST_F(BayFloorTest, AFaceWhereTheFloorWasFreeHasRisenUntilItIsTold) {
+  BayFloor floor{square(kBay, kSide_m)};
+  rebuild({{kBay + Point2{0.6, 1.2}, {1.2, 0.8}}});
+  see(floor, kBefore, 20);
+  floor.take_as_told();
+  rebuild({{kBay + Point2{0.6, 1.05}, {1.2, 0.8}}});  // of a pose that is a little off
+  see(floor, kBefore, 20);
+  EXPECT_EQ(counts(floor).risen, 0);
+  const int free = counts(floor).free;
+  EXPECT_EQ(counts(floor).free_since, free);
+  rebuild({{kBay, {2.4, 2.4}}});
+  see(floor, kBefore, 5);
+  EXPECT_GE(counts(floor).risen, 3);
+  EXPECT_EQ(counts(floor).free_since, 0) << "what was free before says nothing of now";
+  floor.take_as_told();
+  EXPECT_EQ(counts(floor).risen, 0);
+}
+
+TEST_F(BayFloorTest, ABodyThatGoesTakesItsShadowWithIt) {
+  BayFloor floor{square(kBay, kSide_m)};
+  rebuild({{kBay, {2.4, 2.4}}});
+  see(floor, kBefore, 12);
+  rebuild({{{9.2, 5.0}, {4.0, 1.0}}});  // it has gone, and the right half is covered
+  see(floor, kBefore, 5);
+  EXPECT_LT(counts(floor).shadowed, 0.1 * counts(floor).cells);
 }
 
 TEST_F(BayFloorTest, WhatLiesBehindANewFaceIsFreeNoLonger) {

@@ -12,7 +12,8 @@ TEST(BayVerdict, FreeFloorIsEmptyWhereThreeQuartersWereSeen) {
 }
 
 TEST(BayVerdict, AFaceAndTheShadowBehindItAreFull) {
-  EXPECT_EQ(shown_state({.cells = 100, .free = 5, .taken = 10, .shadowed = 80, .body = true}, BayState::kUnknown),
+  EXPECT_EQ(shown_state({.cells = 100, .free = 5, .free_since = 5, .taken = 10, .shadowed = 80, .body = true},
+                        BayState::kUnknown),
             BayState::kFull);
   EXPECT_EQ(shown_state({.cells = 100, .free = 0, .taken = 10, .shadowed = 50, .body = true}, BayState::kUnknown),
             std::nullopt)
@@ -20,9 +21,27 @@ TEST(BayVerdict, AFaceAndTheShadowBehindItAreFull) {
 }
 
 TEST(BayVerdict, OnTheBorderOfTwoStatesTheOldOneStays) {
-  const FloorCounts most{.cells = 100, .free = 12, .taken = 10, .shadowed = 70, .body = true};
+  const FloorCounts most{.cells = 100, .free = 12, .free_since = 12, .taken = 10, .shadowed = 70, .body = true};
   EXPECT_EQ(shown_state(most, BayState::kFull), BayState::kFull);
   EXPECT_EQ(shown_state(most, BayState::kPartly), BayState::kPartly);
+}
+
+TEST(BayVerdict, OnlyAnotherLoadFillsAtOnceWhatWasPartlyFull) {
+  FloorCounts shadow{.cells = 100, .taken = 10, .shadowed = 75, .body = true};
+  EXPECT_EQ(shown_state(shadow, BayState::kUnknown), BayState::kFull);
+  EXPECT_EQ(shown_state(shadow, BayState::kPartly), std::nullopt) << "it may be that of the load that is known";
+  shadow.risen = 6;
+  EXPECT_EQ(shown_state(shadow, BayState::kPartly), BayState::kFull);
+}
+
+TEST(BayVerdict, FloorThatWasFreeBeforeTheLoadCameDoesNotTellHowMuchItTakes) {
+  const FloorCounts before{.cells = 100, .free = 12, .free_since = 0, .taken = 10, .shadowed = 65, .body = true};
+  EXPECT_EQ(shown_state(before, BayState::kUnknown), std::nullopt);
+}
+
+TEST(BayVerdict, TheShadowOfANeighboursLoadTakesNothing) {
+  const FloorCounts corner{.cells = 100, .free = 80, .free_since = 80, .taken = 0, .shadowed = 10, .body = true};
+  EXPECT_EQ(shown_state(corner, BayState::kEmpty), BayState::kEmpty);
 }
 
 TEST(BayVerdict, WhereSomebodyStandsNothingNewIsTold) {

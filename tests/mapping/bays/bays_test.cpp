@@ -109,6 +109,22 @@ TEST_F(SeenBays, AStateIsNeverYoungerThanWhatItWasSeenBy) {
   EXPECT_GT(*status().seen, came);
 }
 
+TEST_F(SeenBays, AStateIsSeenNoEarlierThanItBegan) {
+  look(kBefore, 6.0);
+  rebuild({{kBay + Point2{1.4, 1.2}, {0.8, 0.8}}, {{6.0, 5.0}, {3.15, 1.0}}});  // and two fifths are covered
+  const std::vector<BayEvent> told = look(kBefore, 4.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].status.state, BayState::kPartly);
+  EXPECT_GE(*told[0].status.seen, *told[0].status.since);
+}
+
+TEST_F(SeenBays, APalletThatIsSeenFromItsNarrowSideIsToldWithinThreeSeconds) {
+  look(kBefore, 6.0);
+  rebuild({{kBay + Point2{0.8, 0.6}, {0.8, 1.2}}});
+  look(kBefore, 3.0);
+  EXPECT_EQ(status().state, BayState::kPartly);
+}
+
 TEST_F(SeenBays, WhatIsThereNoLongerAndNotSeenWholeIsUnknown) {
   rebuild({{kBay, {2.4, 2.4}}});
   look(kBefore, 3.0);
