@@ -168,12 +168,13 @@ static_assert(2 * kStampCells + 1 <= kSideBySide);
 /// Values around an end, row by row; 0 beyond.
 std::array<StampRow, 2 * kStampCells + 1> stamp_of_an_end() {
   std::array<StampRow, 2 * kStampCells + 1> stamp{};
-  for (int y = -kStampCells; y <= kStampCells; ++y) {
+  int y = -kStampCells;
+  for (StampRow& row : stamp) {
     for (int x = -kStampCells; x <= kStampCells; ++x) {
       const double value = kFull * std::exp(-0.5 * (x * x + y * y) / (kDeviationCells * kDeviationCells));
-      stamp[static_cast<std::size_t>(y + kStampCells)][static_cast<std::size_t>(x + kStampCells)] =
-          static_cast<std::uint8_t>(std::lround(value));
+      row.at(static_cast<unsigned>(x + kStampCells)) = static_cast<std::uint8_t>(std::lround(value));
     }
+    ++y;
   }
   return stamp;
 }
