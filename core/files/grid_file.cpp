@@ -229,8 +229,8 @@ std::filesystem::path picture_named_in(const std::filesystem::path& yaml_file) {
 
 std::string yaml_of(const OccupancyGrid& grid, const std::string& image) {
   const Point2& origin = grid.geometry().origin;
-  return "image: " + image + "\nresolution: " + shortest_text(grid.resolution_m()) + "\norigin: [" +
-         shortest_text(origin.x()) + ", " + shortest_text(origin.y()) +
+  return "image: " + image + "\nresolution: " + yaml_number(grid.resolution_m()) + "\norigin: [" +
+         yaml_number(origin.x()) + ", " + yaml_number(origin.y()) +
          ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 }
 

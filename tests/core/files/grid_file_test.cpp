@@ -92,6 +92,15 @@ TEST(GridFile, WritesNumbersAsPeopleDoAndReadsThemBackExactly) {
   EXPECT_EQ(read_grid(file), awkward);
 }
 
+TEST(GridFile, WritesSmallNumbersSoThatReadersOfYaml11KnowThemAsNumbers) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "map.yaml";
+  write_grid(test::drawn_grid({"#"}, 0.05, {1e-05, -2.5e-07}), file);
+  std::ifstream written(file);
+  const std::string text{std::istreambuf_iterator<char>(written), {}};
+  EXPECT_NE(text.find("origin: [1.0e-05, -2.5e-07, 0.0]"), std::string::npos) << text;
+}
+
 TEST(GridFile, ReadsForeignShadesAndComments) {
   const test::TemporaryFolder folder;
   folder.write("m.pgm", std::string("P5\n# by another hand\n3 1\n# again\n100\n") + "\x00" + "\x64" + "\x32");
