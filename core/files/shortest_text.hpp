@@ -13,12 +13,12 @@ namespace deltamap {
   return error == std::errc{} ? std::string(buffer, end) : std::string{};
 }
 
-/// The same in a YAML file: to readers of YAML 1.1 (PyYAML) 1e-05 is text, and 1.0e-05 the number.
-[[nodiscard]] inline std::string yaml_number(double value) {
-  std::string text = shortest_text(value);
+/// Such a text in a YAML file: to readers of YAML 1.1 (PyYAML) 1e-05 is a word, and 1.0e-05 the number.
+[[nodiscard]] inline std::string yaml_number(std::string text) {
   const auto exponent = text.find('e');
   if (exponent != std::string::npos && text.find('.') == std::string::npos) text.insert(exponent, ".0");
   return text;
 }
+[[nodiscard]] inline std::string yaml_number(double value) { return yaml_number(shortest_text(value)); }
 
 }  // namespace deltamap

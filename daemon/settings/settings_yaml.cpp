@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "core/files/shortest_text.hpp"
 #include "daemon/settings/settings_documents.hpp"
 #include "daemon/settings/settings_sections.hpp"
 
@@ -57,7 +58,8 @@ std::string settings_as_yaml(const Settings& settings) {
     parts.pop_back();
     yaml += headings(section, parts);
     section = parts;
-    std::string line = std::string(2 * parts.size(), ' ') + leaf + ": " + key.text();
+    const std::string value = key.type == SettingKey::Type::kNumber ? yaml_number(key.text()) : key.text();
+    std::string line = std::string(2 * parts.size(), ' ') + leaf + ": " + value;
     line.resize(std::max(line.size() + 1, kCommentColumn), ' ');
     yaml += line + "# " + comment_of(key) + "\n";
   }

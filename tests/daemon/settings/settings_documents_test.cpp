@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "daemon/settings/reader/nearest_key.hpp"
@@ -113,6 +114,12 @@ std::size_t leaves_of(const Json& schema) {
   std::size_t leaves = 0;
   for (const Json& one : schema.at("properties")) leaves += leaves_of(one);
   return leaves;
+}
+
+TEST(SettingsDocuments, NumbersAreSuchToReadersOfYaml11) {
+  const std::string yaml = settings_as_yaml(Settings{});
+  EXPECT_FALSE(std::regex_search(yaml, std::regex{R"(: -?\d+e)"})) << "a number without a point is a word there";
+  EXPECT_NE(yaml.find("kidnapping_prior: 1.0e-05 "), std::string::npos);
 }
 
 TEST(SettingsDocuments, TheWrittenFilesAreWhatTheProgramWrites) {
