@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """What the localizer costs beside an earlier commit of its own: instructions under callgrind, which repeat on any machine, and the ratio of
-both. The earlier one is checked out and built below build/cost. Called by ./dev bench cost.
+both. The earlier one is checked out and built below build/cost. Then what it costs beside others (beside_others.py). Called by ./dev bench
+cost.
 usage: cost.py [COMMIT] [--out FILE]    COMMIT: by default the one that the targets were set against"""
 import argparse, pathlib, subprocess, sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-import localizer_cost
+import beside_others, localizer_cost
 from measuring import ROOT, provenance, row, run, table_lines
 
 FIRST = "38c24d49"
@@ -47,10 +48,12 @@ def main():
     arguments = parser.parse_args()
     commit = run("git", "rev-parse", "--short=8", arguments.commit).strip()
     made = rows(built(commit))
-    text = "\n".join(["# What the localizer costs beside an earlier commit", "",
-                      "Written by `./dev bench cost %s` (%s). Instructions that callgrind counts for one unit of each; they repeat on any"
-                      % (commit, provenance()), "processor that has AVX2. Times and peers: [the localizer, measured](localization.md).", "",
-                      *table_lines(made, "at %s" % commit), ""])
+    text = "\n".join(["# What the localizer costs", "", "Written by `./dev bench cost %s`: %s." % (commit, provenance()), "",
+                      "## Beside an earlier commit", "", "Instructions that callgrind counts for one unit of each; they repeat on any processor that has AVX2.", "",
+                      *table_lines(made, "at %s" % commit), "",
+                      "## Beside others", "", "CPU time of one thread on the processor named above. pf-localization runs here, where it is installed; figures of others are constants,",
+                      "measured once on one machine on the same drives, as in [the localizer, measured](localization.md).", "",
+                      *table_lines(beside_others.rows()), ""])
     arguments.out.write_text(text)
     print(text)
 
