@@ -64,7 +64,7 @@ class PlacesOfCells {
   explicit PlacesOfCells(std::size_t cells) : slots_(std::bit_ceil(2 * cells + 1)) {}
   /// Of a cell that has come before its place; else `place` from now on.
   std::uint32_t place_of(std::uint64_t cell, std::uint32_t place) {
-    std::size_t slot = (cell * 0x9E3779B97F4A7C15U) >> 32U;
+    auto slot = static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15U) >> 32U);
     for (;; ++slot) {
       Slot& at = slots_[slot & (slots_.size() - 1)];
       if (at.place_plus_1 == 0) at = {cell, place + 1};
