@@ -124,12 +124,7 @@ Followed followed(const ThingsRun& run) {
       all.solid.add(truth, drive.map(), mapping::things::assumed_cells(things.all(), drive.map()));
     }
   }
-  std::vector<simulation::score::ScoredChange> watched;
-  for (const simulation::score::Watched& one : watch.watched()) {
-    watched.push_back(one.change);
-    watched.back().seen_s = one.witness.longest_seen_s();
-  }
-  all.changes = true_changes(watched, kSeenForThings_s);
+  all.changes = true_changes(watch.watched(), kSeenForThings_s);
   all.things = things.all().size();
   all.assumed = assumed_score_of(things.all(), boxes_in(watch.world()));
   return all;

@@ -72,10 +72,11 @@ const TrueChange* change_of(const Told& told, std::span<const TrueChange> change
   return newest;
 }
 
-std::vector<TrueChange> true_changes(std::span<const simulation::score::ScoredChange> watched, double seen_least_s) {
+std::vector<TrueChange> true_changes(std::span<const simulation::score::Watched> watched, double seen_least_s) {
   std::vector<TrueChange> changes;
-  for (const simulation::score::ScoredChange& half : watched) {
-    const bool is_seen = half.seen_s >= seen_least_s;
+  for (const simulation::score::Watched& one : watched) {
+    const simulation::score::ScoredChange& half = one.change;
+    const bool is_seen = one.is_told_apart && one.witness.longest_seen_s() >= seen_least_s;
     const bool is_second = half.appears && half.kind != simulation::ChangeKind::kAdded && !changes.empty() &&
                            changes.back().time == half.time;
     if (!is_second) changes.push_back({half.time, half.kind, {}, {}, true});

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mapping/things/things.hpp"
-#include "simulation/score/change_score.hpp"
+#include "simulation/score/change_watch.hpp"
 
 namespace deltamap::experiments {
 
@@ -18,11 +18,13 @@ struct TrueChange {
   simulation::ChangeKind kind = simulation::ChangeKind::kRemoved;
   std::optional<simulation::Box> from{};
   std::optional<simulation::Box> at{};
-  bool is_seen = false;  ///< each of its places for long enough, and no later act touched them
+  /// Each of its places for long enough, and what they were before had been in view: who has not seen a container go
+  /// cannot tell the next one on its floor from it.
+  bool is_seen = false;
 };
 
 /// A removal, an addition, or both of a shift.
-[[nodiscard]] std::vector<TrueChange> true_changes(std::span<const simulation::score::ScoredChange> watched,
+[[nodiscard]] std::vector<TrueChange> true_changes(std::span<const simulation::score::Watched> watched,
                                                    double seen_least_s);
 
 /// What was told of a thing until it was told to be of another kind, with how it was told at last.

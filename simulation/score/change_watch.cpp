@@ -14,6 +14,11 @@ namespace {
 
 constexpr double kSamePlace_m = 0.05;  // places this near to each other count as one
 
+bool is_same_place(const Box& a, const Box& b) {
+  return (a.centre - b.centre).norm() <= kSamePlace_m && std::abs(a.width_m - b.width_m) <= kSamePlace_m &&
+         std::abs(a.height_m - b.height_m) <= kSamePlace_m;
+}
+
 }  // namespace
 
 ChangeWatch::ChangeWatch(const Scenario& scenario, const GridGeometry& geometry)
@@ -37,12 +42,25 @@ void ChangeWatch::apply(const Change& change, Timestamp time, const Point2& robo
 }
 
 void ChangeWatch::add(const ScoredChange& change, Witness witness) {
+  const bool is_told = is_told_apart(change);
   for (Watched& earlier : watched_) {
-    if (earlier.change.time < change.time && overlap(grown(earlier.change.box, kSamePlace_m), change.box)) {
-      earlier.change.is_overtaken = true;
-    }
+    if (earlier.change.time >= change.time || !overlap(grown(earlier.change.box, kSamePlace_m), change.box)) continue;
+    if (!earlier.change.is_overtaken) earlier.later = earlier.witness;
+    earlier.change.is_overtaken = true;
+    earlier.is_replaced = earlier.is_replaced || is_same_place(earlier.change.box, change.box);
   }
-  watched_.push_back({change, std::move(witness)});
+  watched_.push_back({change, std::move(witness), is_told});
+}
+
+/// Against what was in view last of the place; else against what it was at the beginning.
+bool ChangeWatch::is_told_apart(const ScoredChange& change) const {
+  std::optional<bool> stood;
+  for (const Watched& earlier : watched_) {
+    if (earlier.change.time >= change.time || !is_same_place(earlier.change.box, change.box)) continue;
+    if (!stood) stood = !earlier.change.appears;
+    if (earlier.was_in_view) stood = earlier.change.appears;
+  }
+  return !stood || *stood != change.appears;
 }
 
 /// The cells of a box's surface that could be seen from the floor on which the robot stands.
@@ -72,9 +90,11 @@ std::vector<TrueBeam> ChangeWatch::view_from(const Pose2& map_from_laser, double
 
 void ChangeWatch::look(std::span<const TrueBeam> view, double seconds, int face_beams) {
   for (Watched& watched : watched_) {
-    if (watched.change.is_overtaken) continue;
-    for (const TrueBeam& beam : view) watched.witness.look(beam);
-    watched.witness.end_look(seconds, face_beams);
+    if (watched.is_replaced || (watched.change.is_overtaken && watched.was_in_view)) continue;
+    Witness& witness = watched.later ? *watched.later : watched.witness;
+    for (const TrueBeam& beam : view) witness.look(beam);
+    witness.end_look(seconds, face_beams);
+    watched.was_in_view = witness.longest_seen_s() > 0.0;
   }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,11 @@ namespace deltamap::simulation::score {
 /// A change under observation.
 struct Watched {
   ScoredChange change;
-  Witness witness;
+  Witness witness;            ///< until it was overtaken
+  bool is_told_apart = true;  ///< what its place was before had been in view: else nobody can tell that this is another
+  bool was_in_view = false;   ///< for one look at least, until the same place changed again
+  std::optional<Witness> later{};  ///< from when it was overtaken on, until then
+  bool is_replaced = false;        ///< the same place has changed again
 };
 
 class ChangeWatch {
@@ -51,6 +56,7 @@ class ChangeWatch {
 
  private:
   void add(const ScoredChange& change, Witness witness);
+  [[nodiscard]] bool is_told_apart(const ScoredChange& change) const;
   [[nodiscard]] std::unordered_set<std::size_t> visible_surface(const Box& box, const Point2& robot) const;
 
   GridGeometry geometry_;
