@@ -43,7 +43,7 @@ class PassView {
     first_ = grid.cell_at(around.origin);
     columns_ = around.width + 1;
     cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(around.height + 1));
-    for (std::uint16_t k = 0; k < scans.size(); ++k) add(scans[k], static_cast<std::uint16_t>(k + 1));
+    for (std::size_t k = 0; k < scans.size(); ++k) add(scans[k], static_cast<std::uint16_t>(k + 1));
   }
 
   void collect(std::uint32_t pass, std::vector<SeenCell>& walls) const {
