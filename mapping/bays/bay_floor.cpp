@@ -221,7 +221,8 @@ bool BayFloor::is_beside_what_stood(std::size_t index) const {
   const int row = static_cast<int>(index) / columns_;
   for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
     for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
-      const FloorCell& beside = cells_[static_cast<std::size_t>(r * columns_ + c)];
+      const int place = r * columns_ + c;
+      const FloorCell& beside = cells_[static_cast<std::size_t>(place)];
       if (beside.is_gathered && !beside.is_risen) return true;
     }
   }
