@@ -15,16 +15,22 @@ def figures(program, what, beams, quick, scans=1500):
     return {name: float(value) for name, value in (line.split() for line in text.splitlines())}
 
 
-def instructions(program, what, beams):
-    """Instructions inside the measured section, per unit of it."""
+def counted(program, what, beams, scans, within="measured(*"):
+    """Instructions inside the measured section, or inside one function of it, and how many units of it were done."""
     done = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no",
-                           "--toggle-collect=measured(*", program, what, str(beams), "1", str(COUNTED_SCANS)],
+                           "--toggle-collect=" + within, program, what, str(beams), "1", str(scans)],
                           cwd=ROOT, text=True, capture_output=True)
-    counted = re.search(r"Collected : (\d+)", done.stderr)
+    instructions = re.search(r"Collected : (\d+)", done.stderr)
     units = re.search(r"^units (\S+)", done.stdout, re.MULTILINE)
-    if done.returncode or not counted or not units:
+    if done.returncode or not instructions or not units:
         raise SystemExit("callgrind on %s %s failed:\n%s%s" % (program, what, done.stdout, done.stderr))
-    return int(counted.group(1)) / float(units.group(1))
+    return int(instructions.group(1)), float(units.group(1))
+
+
+def instructions(program, what, beams):
+    """Per unit."""
+    total, units = counted(program, what, beams, COUNTED_SCANS)
+    return total / units
 
 
 def weighing_rows(program, on, quick, limit, peers):

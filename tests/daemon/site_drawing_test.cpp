@@ -44,6 +44,11 @@ class SiteDrawingTest : public test::ControlDeskTest {
   [[nodiscard]] Site site() const {
     return {bays_of_text(content_of(settings_.bays.file), "b"), zones_of_text(content_of(settings_.zones.file), "z")};
   }
+  /// By a scan that came after what was drawn last.
+  [[nodiscard]] bool is_taken() const {
+    const int scan = status()["localized"];
+    return reached_scan(scan + 1);
+  }
   /// On the list as its file has it.
   [[nodiscard]] Json drawn(PlaceKind kind, const std::string& place, const std::string& of = "") const {
     return sent({kind, version_of(site(), kind), of, place});
@@ -68,7 +73,9 @@ TEST_F(SiteDrawingTest, IsWrittenAndHoldsAndAReplayTakesItBeforeTheSameScan) {
     const Json reply = drawn(PlaceKind::kZone, kBoxZone);
     EXPECT_EQ(reply["ok"], true) << reply;
     EXPECT_TRUE(reply["message"].get<std::string>().starts_with("in force, and written: 2 zones in ")) << reply;
+    ASSERT_TRUE(is_taken()) << "what is drawn before the next scan is taken with it, as one";
     EXPECT_EQ(drawn(PlaceKind::kBay, kDrawnBay)["ok"], true);
+    ASSERT_TRUE(is_taken());
     EXPECT_EQ(asked({Request::Kind::kReload, {}})["ok"], true);
   });
   EXPECT_EQ(site().zones.size(), 2u);
