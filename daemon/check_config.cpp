@@ -260,7 +260,9 @@ Finding zones_finding(const Settings& settings, const GridGeometry& map) {
     const auto over = settings.initial_pose
                           ? zones_over(settings.initial_pose->position(), zones, settings.navigation.safety)
                           : std::vector<std::string>{};
-    if (!over.empty()) return {Level::kWarning, "zones", settings.zones.file + ": " + over.front()};
+    std::string lines;
+    for (const std::string& line : over) lines += (lines.empty() ? "" : "; ") + line;
+    if (!lines.empty()) return {Level::kWarning, "zones", settings.zones.file + ": " + lines};
     return {Level::kOk, "zones", settings.zones.file + ": " + counted(zones.size(), "zone")};
   } catch (const std::runtime_error& error) {
     return {Level::kError, "zones", error.what()};

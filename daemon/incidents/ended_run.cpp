@@ -168,6 +168,7 @@ std::string drawn(const IncidentFolder& folder, const LeftRing& ring, const std:
                           .map_from_robot = *incident.map_from_robot,
                           .covariance = widest,
                           .scan = recorded_scan(parse_settings(settings, kIncidentSettings), *time, records)}));
+    write_page(folder.path(), incident);
     return "";
   } catch (const std::runtime_error& why) {
     return std::string("without a picture: ") + why.what();

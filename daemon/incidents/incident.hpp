@@ -64,6 +64,6 @@ inline constexpr const char* kIncidentPin = "pinned";
 /// Throws std::runtime_error "FILE: …" where the folder holds no incident.
 [[nodiscard]] Incident read_incident(const std::filesystem::path& folder);
 /// The page for people: what happened, when, where, on which revision, what is kept and what to do.
-[[nodiscard]] std::string words_of(const Incident& incident);
+[[nodiscard]] std::string words_of(const Incident& incident, bool has_picture);
 
 }  // namespace deltamap::daemon

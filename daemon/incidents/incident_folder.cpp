@@ -66,7 +66,8 @@ IncidentFolder::IncidentFolder(const fs::path& parent, Content content) : incide
 
 void write_page(const fs::path& folder, const Incident& incident) {
   replace_file(folder / kIncidentFacts, json_text(incident));
-  replace_file(folder / kIncidentWords, words_of(incident));
+  std::error_code error;
+  replace_file(folder / kIncidentWords, words_of(incident, fs::is_regular_file(folder / kIncidentPicture, error)));
 }
 
 void IncidentFolder::add(const IncidentEvent& event) {

@@ -176,8 +176,10 @@ void IncidentKeeper::raise(IncidentEvent event, Timestamp now) {
   hooks_.log("incident " + open_->incident().name + ": " + event.words);
   if (newest_) {
     const OccupancyGrid& map = checkpoint_ ? *checkpoint_->map : *options_.map;
-    (void)output_.attempt(now,
-                          [&] { draw(open_->path() / kIncidentPicture, *ring_, options_.settings, *newest_, map); });
+    (void)output_.attempt(now, [&] {
+      draw(open_->path() / kIncidentPicture, *ring_, options_.settings, *newest_, map);
+      write_page(open_->path(), open_->incident());
+    });
   }
   for (const std::string& line : within_limits(options_.settings.incidents, open_->incident().name)) hooks_.log(line);
 }

@@ -114,7 +114,7 @@ std::string incidents_reply(const IncidentSettings& settings) {
 
 std::optional<std::string> words_of_incident(const fs::path& folder, std::string_view name) {
   for (const StoredIncident& stored : incidents_in(folder)) {
-    if (stored.folder.filename() == name) return words_of(stored.incident);
+    if (stored.folder.filename() == name) return words_of(stored.incident, has_picture(stored));
   }
   return std::nullopt;
 }

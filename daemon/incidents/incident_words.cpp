@@ -80,19 +80,17 @@ std::string kept_text(const Incident& incident) {
 }
 
 /// The legend of daemon/incidents/incident_picture.
-std::string picture_text(const Incident& incident) {
-  if (!incident.map_from_robot) return "";
+std::string picture_text() {
   return std::string(kIncidentPicture) +
          " shows that moment: the map (black: obstacles, grey: unknown), the newest scan (green where a beam ends at "
-         "an "
-         "obstacle of the map, orange where it does not), the robot with its heading and where it is by 95 % (blue), "
-         "and "
-         "the best other pose, if there was one (purple).\n";
+         "an obstacle of the map, orange where it does not), the robot with its heading and where it is by 95 % "
+         "(blue), "
+         "and the best other pose, if there was one (purple).\n";
 }
 
 }  // namespace
 
-std::string words_of(const Incident& incident) {
+std::string words_of(const Incident& incident, bool has_picture) {
   const IncidentEvent& first = incident.events.front();
   std::string text = incident.name + "\n\nWhat happened\n\n" + events_text(incident);
   text += "\nWhere\n\n" + where_text(incident);
@@ -102,7 +100,7 @@ std::string words_of(const Incident& incident) {
   text += "\nWhat is kept\n\n" + kept_text(incident);
   text += std::string(kIncidentMap) + " is the map that the recording begins on (revision " +
           std::to_string(incident.first_revision) + "), " + kIncidentSettings + " the settings, " + kIncidentLog +
-          " the log.\n" + picture_text(incident);
+          " the log.\n" + (has_picture ? picture_text() : "");
   text += "\n  deltamap incident open " + incident.name + "      replay it in the page\n  deltamap incident replay " +
           incident.name + "    whether a replay meets the same\n  deltamap incident pack " + incident.name +
           "      one file to send\n\ndeltamapd " + incident.version + "\n";

@@ -4,7 +4,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -75,19 +74,6 @@ ListedPlace place_in(const YAML::Node& node, const std::string& file, const Plac
   return place;
 }
 
-void require_utf8(std::string_view text, const std::string& file) {
-  int line = 1;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto character = character_at(text, at);
-    if (!character) {
-      throw std::runtime_error(file + ": line " + std::to_string(line) +
-                               ": a character that is not UTF-8: write the file in UTF-8");
-    }
-    line += character->code == U'\n' ? 1 : 0;
-    at += character->bytes;
-  }
-}
-
 bool stands_as_it_is(char32_t code) {
   const bool is_control = code < 0x20 || (code >= 0x7F && code <= 0xA0);
   const bool is_noncharacter = (code & 0xFFFEu) == 0xFFFE || (code >= 0xFDD0 && code <= 0xFDEF);
@@ -100,7 +86,7 @@ std::string in_quotes(std::string_view text) {
   std::string written = "\"";
   for (std::size_t at = 0; at < text.size();) {
     const auto character = character_at(text, at);
-    assert(character && "a place was read from UTF-8");
+    if (!character) throw std::runtime_error("a character that is not UTF-8 cannot be written");
     if (stands_as_it_is(character->code)) {
       written += text.substr(at, character->bytes);
     } else {
@@ -113,9 +99,22 @@ std::string in_quotes(std::string_view text) {
   return written + "\"";
 }
 
-std::string in_mm(double length_m) { return shortest_text(std::round(1e3 * length_m) / 1e3 + 0.0); }
+std::string in_mm(double length_m) { return yaml_number(std::round(1e3 * length_m) / 1e3 + 0.0); }
 
 }  // namespace
+
+void require_utf8(std::string_view text, const std::string& file) {
+  int line = 1;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto character = character_at(text, at);
+    if (!character) {
+      throw std::runtime_error(file + ": line " + std::to_string(line) +
+                               ": a character that is not UTF-8: write the file in UTF-8");
+    }
+    line += character->code == U'\n' ? 1 : 0;
+    at += character->bytes;
+  }
+}
 
 std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& file, const PlaceKeys& keys) {
   require_utf8(yaml, file);

@@ -29,6 +29,9 @@ struct ListedPlace {
   friend bool operator==(const ListedPlace&, const ListedPlace&) = default;
 };
 
+/// Throws std::runtime_error "FILE: line N: a character that is not UTF-8 …".
+void require_utf8(std::string_view text, const std::string& file);
+
 /// `file` stands for the text in complaints. Corners count to a millimetre. Throws std::runtime_error.
 [[nodiscard]] std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& file, const PlaceKeys& keys);
 /// What places_in() reads again, to a millimetre.

@@ -26,7 +26,7 @@ constexpr std::int8_t kFree = -2;
 constexpr std::int8_t kTaken = 4;  // from surely free on 1.4 s of looks: a person walks on
 constexpr std::int8_t kSurelyTaken = 6;
 constexpr std::uint8_t kShadowLooks = 2;
-constexpr double kBody_m = 1.6;  // across: larger than three people beside each other
+constexpr double kBody_m = 1.6;  // across: two people beside each other are smaller
 constexpr int kEndOnFace = 2;    // looks that an end on a straight face counts for: people have none
 constexpr std::uint8_t kFaceLooks = 2;
 constexpr std::uint8_t kMostFaceLooks = 4;
@@ -204,11 +204,14 @@ void BayFloor::mark_faces(BeamEnds& ends) {
   ends.cells.clear();
 }
 
-/// A body through which beams go has gone, and its shadow with it.
+/// A body through which beams go, and in which none ends, has gone, and its shadow with it.
 void BayFloor::drop_lost_shadows() {
-  const bool is_lost = std::any_of(cells_.begin(), cells_.end(), [](const FloorCell& cell) {
-    return cell.is_body && cell.evidence <= kTaken && (cell.marks & (kWentThrough | kEnded)) == kWentThrough;
-  });
+  bool is_lost = false;
+  for (const FloorCell& cell : cells_) {
+    if (!cell.is_body) continue;
+    if ((cell.marks & kEnded) != 0) return;
+    is_lost = is_lost || (cell.evidence <= kTaken && (cell.marks & kWentThrough) != 0);
+  }
   if (!is_lost) return;
   for (FloorCell& cell : cells_) {
     if ((cell.marks & kBehindBody) == 0) cell.shadows = 0;

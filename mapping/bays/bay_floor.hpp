@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The floor of one bay in cells, and what the beams of the last looks say of each: beams went through it, ended in it,
 // or it lies behind a face that stands. A body that passes leaves nothing behind: a cell changes its mind by several
-// looks, and what has no straight face and is no larger than two people is no load.
+// looks, and what has no straight face and is less than 1.6 m across is no load.
 #pragma once
 
 #include <cstddef>

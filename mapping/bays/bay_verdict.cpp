@@ -41,7 +41,7 @@ int least_known(const FloorCounts& counts, BayState state) {
 }
 
 std::optional<BayState> shown_state(const FloorCounts& counts, BayState so_far) {
-  const double least_share = counts.taken == 0 ? kAgainstEmpty : so_far == BayState::kPartly ? kStaysPartly : kPartly;
+  const double least_share = so_far == BayState::kPartly ? kStaysPartly : counts.taken == 0 ? kAgainstEmpty : kPartly;
   const bool is_taken = counts.body && taken_share(counts) >= least_share;
   if (!is_taken && counts.small > 0) return std::nullopt;  // somebody, or a load that is seen from its narrow side
   if (!is_taken && counts.free >= least_known(counts, BayState::kEmpty)) return BayState::kEmpty;

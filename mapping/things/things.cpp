@@ -223,8 +223,10 @@ std::vector<ThingEvent> Things::told(const Step& step) {
     if (body.is_touched) judge(body, step.now, params_);
   }
   join_faces(step.now);
-  join_pushes(step.now.map);
-  join_moves();
+  if (!step.now.takes_back) {  // else nothing new is said of the world
+    join_pushes(step.now.map);
+    join_moves();
+  }
   std::vector<ThingEvent> events;
   for (const Thing& thing : joined_) events.push_back({thing, step.now.number, step.now.time, true});
   for (Body& body : bodies_) {

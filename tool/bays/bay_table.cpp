@@ -6,6 +6,7 @@
 
 #include "core/geometry/angle.hpp"
 #include "core/trimmed.hpp"
+#include "daemon/site/place_list.hpp"
 #include "tool/bays/bay_import.hpp"
 #include "tool/bays/rectangle.hpp"
 
@@ -102,6 +103,7 @@ Bay bay_of(const TableRow& row, const std::optional<BaySize>& size) {
 
 ImportedBays bays_of_csv(const std::string& text, const std::string& name, const std::optional<BaySize>& size) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  daemon::require_utf8(text, name);
   std::vector<std::string> lines = lines_in(text);
   if (lines.empty()) throw std::runtime_error(name + ": is empty");
   if (lines[0].starts_with(kByteOrderMark)) lines[0].erase(0, kByteOrderMark.size());

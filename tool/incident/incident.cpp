@@ -78,7 +78,8 @@ void list(const IncidentOptions& options) {
 void show(const IncidentOptions& options) {
   const fs::path folder = folder_of(options, options.incident);
   const daemon::Incident incident = daemon::read_incident(folder);
-  std::cout << (options.as_json ? json_text(incident) : words_of(incident));
+  std::cout << (options.as_json ? json_text(incident)
+                                : words_of(incident, fs::is_regular_file(folder / daemon::kIncidentPicture)));
 }
 
 /// "the live run: lost at …; the replay: the same 0.1 s later"

@@ -3,7 +3,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <system_error>
+#include <utility>
 
 namespace deltamap::tool {
 namespace {
@@ -17,15 +17,33 @@ bool is_thing_line(const ThingLine& line) {
 
 }  // namespace
 
+std::string RunThings::line_at(std::ifstream& in, std::uint64_t begins) {
+  std::string text;
+  in.clear();
+  in.seekg(static_cast<std::streamoff>(begins));
+  std::getline(in, text);
+  return text;
+}
+
+/// A run that is replayed into the same folder begins its file anew.
+bool RunThings::goes_on(std::ifstream& in) const {
+  if (read_to_ == 0) return true;
+  if (line_at(in, 0) != first_) return false;
+  in.clear();
+  in.seekg(static_cast<std::streamoff>(read_to_ - 1));
+  return in.get() == '\n';
+}
+
 void RunThings::read_on(std::ifstream& in) {
-  std::error_code error;
-  if (const auto size = std::filesystem::file_size(file_, error); !error && size < read_to_) {
+  if (!goes_on(in)) {
     lines_.clear();
     unread_ = 0;
     read_to_ = 0;
   }
+  in.clear();
   in.seekg(static_cast<std::streamoff>(read_to_));
   for (std::string text; std::getline(in, text) && !in.eof(); read_to_ += text.size() + 1) {
+    if (read_to_ == 0) first_ = text;
     const ThingLine line = ThingLine::parse(text, nullptr, false);
     if (is_thing_line(line)) {
       lines_.push_back({line["time"].get<double>(), line["thing"].get<std::uint32_t>(), read_to_});
@@ -33,7 +51,6 @@ void RunThings::read_on(std::ifstream& in) {
       ++unread_;
     }
   }
-  in.clear();
 }
 
 std::string RunThings::at(Timestamp time) {
@@ -45,10 +62,7 @@ std::string RunThings::at(Timestamp time) {
   }
   ThingLine answer{{"ok", true}, {"things", ThingLine::array()}, {"unread", unread_}};
   for (const auto& [thing, begins] : newest) {
-    std::string text;
-    in.seekg(static_cast<std::streamoff>(begins));
-    std::getline(in, text);
-    ThingLine line = ThingLine::parse(text, nullptr, false);
+    ThingLine line = ThingLine::parse(line_at(in, begins), nullptr, false);
     if (is_thing_line(line)) answer["things"].push_back(std::move(line));  // else it was rewritten meanwhile
   }
   return answer.dump();

@@ -20,7 +20,7 @@ class RunThings {
 
   /// {"ok":true,"things":[…],"unread":N}: of each thing the newest line up to `time`, in the order of their ids. N
   /// lines are no lines of things.jsonl; one that is still being written does not count. Without a file there is no
-  /// thing. A file that has become shorter is read anew.
+  /// thing. A file that was begun anew is read anew.
   [[nodiscard]] std::string at(Timestamp time);
 
  private:
@@ -29,10 +29,13 @@ class RunThings {
     std::uint32_t thing = 0;
     std::uint64_t begins = 0;  // in the file, bytes
   };
+  [[nodiscard]] static std::string line_at(std::ifstream& in, std::uint64_t begins);
+  [[nodiscard]] bool goes_on(std::ifstream& in) const;
   void read_on(std::ifstream& in);
 
   std::filesystem::path file_;
   std::vector<Line> lines_;  // as in the file
+  std::string first_;        // line of the file
   std::size_t unread_ = 0;
   std::uint64_t read_to_ = 0;  // behind the last whole line
 };

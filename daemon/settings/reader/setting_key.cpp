@@ -144,7 +144,7 @@ SettingKey pose_key(std::string name, std::optional<Pose2>& field, std::string m
   SettingKey key{.type = SettingKey::Type::kPose, .name = std::move(name), .meaning = std::move(meaning)};
   key.text = [&field]() -> std::string {
     if (!field) return "null";
-    return "[" + shortest_text(field->x) + ", " + shortest_text(field->y) + ", " + rounded(degrees(field->theta)) + "]";
+    return "[" + yaml_number(field->x) + ", " + yaml_number(field->y) + ", " + rounded(degrees(field->theta)) + "]";
   };
   key.assign = [&field, limits = limits_of(key)](const SettingValue& value) -> std::optional<std::string> {
     if (value.kind == SettingValue::Kind::kNull) {

@@ -109,6 +109,17 @@ TEST_F(EndedRunTest, ItsLastMinutesAreAnIncidentThatReplays) {
   EXPECT_LT(farthest_m, 0.1);
 }
 
+TEST_F(EndedRunTest, WithoutANewestPoseThereIsNoPictureAndNoWordOfOne) {
+  start();
+  drive(150.0);
+  end_without_a_word();
+  ASSERT_TRUE(fs::remove(folder() / kRingFolder / "newest.json")) << "it is not synced";
+  start_and_stop();
+  ASSERT_EQ(kept().size(), 1u) << told();
+  EXPECT_FALSE(fs::exists(kept().front().folder / kIncidentPicture));
+  EXPECT_EQ(test::content_of(kept().front().folder / kIncidentWords).find(kIncidentPicture), std::string::npos);
+}
+
 TEST_F(EndedRunTest, AYoungRunIsRepeatedFromItsBeginning) {
   start();
   drive(30.0);
@@ -186,8 +197,8 @@ TEST_F(EndedRunTest, ATornLastBlockIsCutAndTold) {
   const Incident incident = kept().front().incident;
   EXPECT_NE(incident.lacks.find("its last block was torn"), std::string::npos) << incident.lacks;
   EXPECT_FALSE(incident.is_complete());
-  EXPECT_NE(words_of(incident).find("It is not complete: its last block was torn"), std::string::npos)
-      << words_of(incident);
+  EXPECT_NE(words_of(incident, false).find("It is not complete: its last block was torn"), std::string::npos)
+      << words_of(incident, false);
   EXPECT_NE(told().find("its last block was torn"), std::string::npos) << told();
   EXPECT_FALSE(records_in(kept().front()).empty());
 }

@@ -109,7 +109,8 @@ TEST_F(IncidentKeeperTest, ARobotThatIsCarriedAwayIsKeptAndItsReplayMeetsItAtThe
   ASSERT_GE(kept().size(), 1u);
   const StoredIncident stored = kept().front();
   const IncidentEvent live = stored.incident.events.front();
-  EXPECT_TRUE(live.kind == IncidentKind::kKidnapped || live.kind == IncidentKind::kLost) << words_of(stored.incident);
+  EXPECT_TRUE(live.kind == IncidentKind::kKidnapped || live.kind == IncidentKind::kLost)
+      << words_of(stored.incident, false);
   PoseWatch watch;
   std::optional<IncidentEvent> again;
   (void)replay(stored, "again", [&](const ReplayedScan& scan) {

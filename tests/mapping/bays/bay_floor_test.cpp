@@ -95,6 +95,16 @@ TEST_F(BayFloorTest, ABodyThatGoesTakesItsShadowWithIt) {
   EXPECT_LT(counts(floor).shadowed, 0.1 * counts(floor).cells);
 }
 
+TEST_F(BayFloorTest, ABodyThatIsSeenThroughAtItsEdgeKeepsItsShadow) {
+  BayFloor floor{square(kBay, kSide_m)};
+  rebuild({{kBay, {2.4, 2.4}}});
+  see(floor, kBefore, 12);
+  const int shadowed = counts(floor).shadowed;
+  rebuild({{kBay + Point2{0.2, 0.0}, {2.2, 2.4}}});  // of a pose that is a little off
+  see(floor, kBefore, 3);
+  EXPECT_GT(counts(floor).shadowed, 0.8 * shadowed);
+}
+
 TEST_F(BayFloorTest, WhatLiesBehindANewFaceIsFreeNoLonger) {
   BayFloor floor{square(kBay, kSide_m)};
   see(floor, kBefore, 5);

@@ -44,6 +44,12 @@ TEST(BayVerdict, TheShadowOfANeighboursLoadTakesNothing) {
   EXPECT_EQ(shown_state(corner, BayState::kEmpty), BayState::kEmpty);
 }
 
+TEST(BayVerdict, ALoadThatIsKnownStaysWhileOnlyItsShadowIsSeen) {
+  const FloorCounts flush{.cells = 100, .free = 86, .free_since = 86, .shadowed = 14, .body = true};  // face on the rim
+  EXPECT_EQ(shown_state(flush, BayState::kPartly), BayState::kPartly);
+  EXPECT_EQ(shown_state(flush, BayState::kEmpty), BayState::kEmpty) << "a neighbour's";
+}
+
 TEST(BayVerdict, WhereSomebodyStandsNothingNewIsTold) {
   EXPECT_EQ(shown_state({.cells = 100, .free = 90, .small = 3}, BayState::kUnknown), std::nullopt);
 }

@@ -88,6 +88,9 @@ TEST(BayImport, SaysInOneLineWhatIsWrongWithATable) {
   EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1,zwei\n"),
             "bays.csv: line 2: 'y_m' must be a number with a point, not 'zwei'");
   EXPECT_EQ(csv_complaint("id,x_m,y_m\n,1,2\n"), "bays.csv: line 2: 'id' is empty");
+  EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1,2\nTor S\xFC"
+                          "d,1,2\n"),
+            "bays.csv: line 3: a character that is not UTF-8: write the file in UTF-8");
   EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1,2\n", std::nullopt),
             "bays.csv: line 2: bay 'A' has no size: give along_m and across_m, or --size ALONGxACROSS in metres");
   EXPECT_EQ(csv_complaint("id,x\nA,1\n"),

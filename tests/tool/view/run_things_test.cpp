@@ -38,6 +38,18 @@ TEST(RunThings, AreTheNewestLineOfEachUpToAMoment) {
   EXPECT_EQ(kinds_at(things, 200.0), "1 gone;2 moved;3 gone;") << "by now it is written";
 }
 
+TEST(RunThings, OfAFileThatWasBegunAnewAreReadAnew) {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "things.jsonl";
+  std::ofstream{file} << R"({"time":100.0,"thing":1,"kind":"appeared"})" << '\n';
+  RunThings things{file};
+  EXPECT_EQ(kinds_at(things, 200.0), "1 appeared;");
+  std::ofstream{file} << R"({"time":90.0,"thing":11,"kind":"gone","words":"longer than the line before"})" << '\n'
+                      << R"({"time":91.0,"thing":12,"kind":"gone"})" << '\n';
+  EXPECT_EQ(kinds_at(things, 200.0), "11 gone;12 gone;");
+  EXPECT_EQ(json::parse(things.at({}))["unread"], 0);
+}
+
 TEST(RunThings, AreNoneWithoutAFile) {
   RunThings things{"/no/such/things.jsonl"};
   EXPECT_TRUE(json::parse(things.at({}))["things"].empty());
@@ -54,8 +66,9 @@ TEST(RunThings, ReadOfALongFileOnlyWhatIsNewAndWhatIsShown) {
   }
   RunThings things{file};
   EXPECT_EQ(kinds_at(things, 99.0 + kLines), "0 of 1998;1 of 1999;2 of 1997;");
-  // In place, as long as before: lines that have been read, and are not shown, are read no more.
-  std::fstream{file, std::ios::in | std::ios::out} << "no line";
+  // In place, as long as before: lines that have been read, and are not shown, are read no more, but the first.
+  const auto second = static_cast<std::streamoff>(std::string(R"({"time":100,"thing":0,"kind":"of 0"})").size() + 1);
+  (std::fstream{file, std::ios::in | std::ios::out}.seekp(second)) << "no line";
   EXPECT_EQ(kinds_at(things, 99.0 + kLines), "0 of 1998;1 of 1999;2 of 1997;");
   EXPECT_EQ(json::parse(things.at({}))["unread"], 0);
   std::ofstream{file} << R"({"time":50,"thing":7,"kind":"another run's"})" << '\n';
