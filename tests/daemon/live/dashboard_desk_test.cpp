@@ -98,7 +98,7 @@ TEST_F(DashboardDeskTest, ListsIncidentsAndTellsOneInWords) {
   EXPECT_EQ(list["incidents"][0]["kind"], "lost");
   const WebAnswer words = got("/api/incidents/" + incident.name);
   EXPECT_EQ(words.status, 200);
-  EXPECT_EQ(words.body, words_of(incident, false));
+  EXPECT_EQ(words.body, words_of(incident, true));
   EXPECT_EQ(list["incidents"][0]["picture"], true);
   const WebAnswer picture = got("/api/incidents/" + incident.name + "/picture.png");
   EXPECT_EQ(picture.headers.at("Content-Type"), "image/png");

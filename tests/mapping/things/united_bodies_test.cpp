@@ -78,5 +78,19 @@ TEST(UnitedBodies, WhatIsNoLongerFollowedStillGoesUnderItsId) {
   EXPECT_EQ(told[0].thing.kind, ThingKind::kGone);
 }
 
+TEST(UnitedBodies, AnUndoTellsNoMove) {
+  DrawnSite site;
+  site.box(kBox).begin_with_what_is_drawn();
+  (void)site.clear({4.0, 4.0, 6.0, 5.6}).revision(10);  // all but its east
+  const Drawn beside{4.0, 4.8, 6.4, 6.4};
+  (void)site.north(beside).west(beside).revision(12);
+  (void)site.north({4.0, 4.8, 7.0, 6.4}).revision(14);
+  (void)site.clear({6.0, 4.0, 6.4, 5.6}).revision(300);
+  for (const ThingEvent& event : site.undo(3, 400.0)) {
+    EXPECT_NE(event.thing.kind, ThingKind::kMoved) << words_of(event.thing);
+    EXPECT_NE(event.thing.kind, ThingKind::kJoined) << words_of(event.thing);
+  }
+}
+
 }  // namespace
 }  // namespace deltamap::mapping::things
