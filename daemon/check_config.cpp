@@ -261,7 +261,10 @@ Finding zones_finding(const Settings& settings, const GridGeometry& map) {
                           ? zones_over(settings.initial_pose->position(), zones, settings.navigation.safety)
                           : std::vector<std::string>{};
     std::string lines;
-    for (const std::string& line : over) lines += (lines.empty() ? "" : "; ") + line;
+    for (const std::string& line : over) {
+      if (!lines.empty()) lines += "; ";
+      lines += line;
+    }
     if (!lines.empty()) return {Level::kWarning, "zones", settings.zones.file + ": " + lines};
     return {Level::kOk, "zones", settings.zones.file + ": " + counted(zones.size(), "zone")};
   } catch (const std::runtime_error& error) {

@@ -58,8 +58,10 @@ std::string settings_as_yaml(const Settings& settings) {
     parts.pop_back();
     yaml += headings(section, parts);
     section = parts;
-    const std::string value = key.type == SettingKey::Type::kNumber ? yaml_number(key.text()) : key.text();
-    std::string line = std::string(2 * parts.size(), ' ') + leaf + ": " + value;
+    std::string line(2 * parts.size(), ' ');
+    line += leaf;
+    line += ": ";
+    line += key.type == SettingKey::Type::kNumber ? yaml_number(key.text()) : key.text();
     line.resize(std::max(line.size() + 1, kCommentColumn), ' ');
     yaml += line + "# " + comment_of(key) + "\n";
   }
