@@ -25,7 +25,7 @@ std::string free_name(const fs::path& parent, const IncidentEvent& event) {
   const std::string name = utc_name(event.time) + "-" + std::string(name_of(event.kind));
   std::error_code error;
   for (int number = 2;; ++number) {
-    const std::string tried = number == 2 ? name : name + "-" + std::to_string(number - 1);
+    std::string tried = number == 2 ? name : name + "-" + std::to_string(number - 1);
     if (!fs::exists(parent / tried, error)) return tried;
   }
 }

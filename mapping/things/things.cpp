@@ -37,6 +37,7 @@ bool is_beyond(const std::vector<CellChange>& cluster, const Outline& outline, c
 
 std::vector<Point2> places_of(const std::vector<CellChange>& cluster, const GridGeometry& geometry) {
   std::vector<Point2> places;
+  places.reserve(cluster.size());
   for (const CellChange& change : cluster) places.push_back(geometry.centre_of(change.cell));
   return places;
 }

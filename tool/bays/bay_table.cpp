@@ -111,8 +111,9 @@ ImportedBays bays_of_csv(const std::string& text, const std::string& name, const
   const std::vector<std::string> columns = cells_of(lines[0], separator);
   for (const std::string& column : columns) {
     if (std::find(kBayColumns.begin(), kBayColumns.end(), column) == kBayColumns.end())
-      throw std::runtime_error(name + ": line 1: nothing is called '" + column + "' here: id, name, stationId, x_m, " +
-                               "y_m, heading_deg, along_m, across_m, polygon_m");
+      TableRow{name + ": line 1", {}}.refuse("nothing is called '" + column +
+                                             "' here: id, name, stationId, x_m, y_m, heading_deg, along_m, across_m, "
+                                             "polygon_m");
   }
   ImportedBays bays;
   for (std::size_t i = 1; i < lines.size(); ++i) {

@@ -57,7 +57,7 @@ struct IncidentOptions {
 /// A folder, or the name of one of those in --folder.
 fs::path folder_of(const IncidentOptions& options, const fs::path& named) {
   std::error_code error;
-  const fs::path plain = named.has_filename() ? named : named.parent_path();  // "NAME/", as shells complete it
+  fs::path plain = named.has_filename() ? named : named.parent_path();  // "NAME/", as shells complete it
   if (fs::exists(plain, error)) return plain;
   if (fs::exists(options.folder / plain, error)) return options.folder / plain;
   refuse_name(options, plain);

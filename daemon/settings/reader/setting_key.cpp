@@ -193,7 +193,7 @@ SettingKey bearings_key(std::string name, std::function<std::vector<double>()> r
   return key;
 }
 
-SettingKey word_key(std::string name, std::vector<std::string> words, std::function<std::size_t()> read,
+SettingKey word_key(std::string name, const std::vector<std::string>& words, std::function<std::size_t()> read,
                     std::function<void(std::size_t)> write, std::string meaning) {
   SettingKey key{
       .type = SettingKey::Type::kWord, .name = std::move(name), .meaning = std::move(meaning), .words = words};

@@ -56,8 +56,9 @@ struct SettingKey {
                                       std::function<void(const std::vector<double>&)> write_deg, std::string meaning);
 /// One word of several; those that look like numbers are numbers in the file. `read` answers the index of the present
 /// one.
-[[nodiscard]] SettingKey word_key(std::string name, std::vector<std::string> words, std::function<std::size_t()> read,
-                                  std::function<void(std::size_t)> write, std::string meaning);
+[[nodiscard]] SettingKey word_key(std::string name, const std::vector<std::string>& words,
+                                  std::function<std::size_t()> read, std::function<void(std::size_t)> write,
+                                  std::string meaning);
 [[nodiscard]] SettingKey whole_key(std::string name, std::function<std::int64_t()> read,
                                    std::function<void(std::int64_t)> write, std::string unit, std::int64_t low,
                                    std::int64_t high, std::string meaning);
@@ -85,7 +86,7 @@ template <typename Enum>
     return index;
   };
   return word_key(
-      std::move(name), std::move(words), read, [&field, choices](std::size_t index) { field = choices[index].second; },
+      std::move(name), words, read, [&field, choices](std::size_t index) { field = choices[index].second; },
       std::move(meaning));
 }
 
