@@ -139,26 +139,29 @@ std::optional<LeftRing::Start> LeftRing::start_at(std::uint64_t number) const {
   }
 }
 
+/// Nothing: the power went before it reached the disk.
+std::optional<Incident> LeftRing::newest_facts() const {
+  try {
+    return incident_of(text_of_file(folder_ / kNewestFacts));
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
 Incident LeftRing::newest(const Start& start) const {
   Incident facts = start.facts;
-  try {
-    const Incident newest = incident_of(text_of_file(folder_ / kNewestFacts));
-    facts.map_from_robot = newest.map_from_robot;
-    facts.is_sure = newest.is_sure;
-    facts.deviation_m = newest.deviation_m;
-    facts.revision = newest.revision;
-  } catch (const std::runtime_error&) {  // the power went before it reached the disk
+  if (const auto newest = newest_facts()) {
+    facts.map_from_robot = newest->map_from_robot;
+    facts.is_sure = newest->is_sure;
+    facts.deviation_m = newest->deviation_m;
+    facts.revision = newest->revision;
   }
   return facts;
 }
 
 std::optional<Timestamp> LeftRing::pose_time() const {
-  try {
-    const Incident newest = incident_of(text_of_file(folder_ / kNewestFacts));
-    return newest.map_from_robot ? std::optional{newest.from} : std::nullopt;
-  } catch (const std::runtime_error&) {
-    return std::nullopt;
-  }
+  const auto newest = newest_facts();
+  return newest && newest->map_from_robot ? std::optional{newest->from} : std::nullopt;
 }
 
 std::shared_ptr<const OccupancyGrid> LeftRing::newest_map() const {

@@ -65,6 +65,7 @@ class LeftRing {
  private:
   void look_at(std::uint64_t number, bool is_last);
   [[nodiscard]] std::optional<Start> start_at(std::uint64_t number) const;
+  [[nodiscard]] std::optional<Incident> newest_facts() const;
 
   std::filesystem::path folder_;
   std::vector<std::uint64_t> numbers_;  // of the segments, in order
