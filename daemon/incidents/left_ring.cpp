@@ -165,8 +165,8 @@ std::optional<Timestamp> LeftRing::pose_time() const {
 }
 
 std::shared_ptr<const OccupancyGrid> LeftRing::newest_map() const {
-  for (auto number = numbers_.rbegin(); number != numbers_.rend(); ++number) {
-    if (const auto start = start_at(*number)) return start->map;
+  for (std::size_t left = numbers_.size(); left > 0; --left) {
+    if (const auto start = start_at(numbers_[left - 1])) return start->map;
   }
   return nullptr;
 }
