@@ -10,29 +10,18 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
-#include <utility>
 
 #include "core/files/foreign_file.hpp"
 #include "core/files/shortest_text.hpp"
 #include "core/files/text_of_file.hpp"
+#include "core/files/yaml_tree.hpp"
 
 namespace deltamap {
 namespace {
 
 constexpr double kFinest_m = 0.001;  // sides of a cell
 constexpr double kCoarsest_m = 100.0;
-
-/// The YAML reader's words, and what they mean to whoever wrote the file.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kMeanings{{
-    {"end of sequence flow not found", "a '[' is not closed"},
-    {"end of map flow not found", "a '{' is not closed"},
-    {"end of map not found", "the indentation does not fit the lines above"},
-    {"end of sequence not found", "the indentation does not fit the lines above"},
-    {"illegal map value", "a ':' is out of place"},
-    {"unknown escape character", "a backslash in double quotes: write it twice, or use single quotes"},
-}};
 
 [[noreturn]] void complain(const std::filesystem::path& file, const std::string& why) {
   throw std::runtime_error(file.string() + ": " + why);
@@ -74,13 +63,6 @@ std::string description_text(const std::filesystem::path& file) {
   }
 }
 
-/// What is missing at the end is found behind the last line.
-int line_of(const YAML::Mark& mark, const std::string& text) {
-  const auto breaks = std::count(text.begin(), text.end(), '\n');
-  const int last = static_cast<int>(breaks) - (text.ends_with('\n') ? 1 : 0);
-  return std::min(mark.line, std::max(last, 0)) + 1;
-}
-
 /// One that is open at the end of its line would take the lines below for its text.
 void require_closed_quotes(const std::filesystem::path& file, const std::string& text) {
   std::istringstream lines(text);
@@ -97,12 +79,9 @@ void require_closed_quotes(const std::filesystem::path& file, const std::string&
 
 YAML::Node tree_of(const std::filesystem::path& file, const std::string& text) {
   try {
-    return YAML::Load(text);
+    return only_yaml_tree(text);
   } catch (const YAML::Exception& error) {
-    const auto* known = std::find_if(kMeanings.begin(), kMeanings.end(),
-                                     [&](const auto& one) { return error.msg.starts_with(one.first); });
-    complain(file, "line " + std::to_string(line_of(error.mark, text)) +
-                       ": not YAML: " + (known == kMeanings.end() ? error.msg : std::string(known->second)));
+    complain(file, placed_meaning_of(error, text));
   }
 }
 

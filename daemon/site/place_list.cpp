@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "core/files/shortest_text.hpp"
+#include "core/files/yaml_tree.hpp"
 #include "daemon/settings/reader/text_character.hpp"
 
 namespace deltamap::daemon {
@@ -120,9 +121,9 @@ std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& fil
   require_utf8(yaml, file);
   YAML::Node root;
   try {
-    root = YAML::Load(std::string(yaml));
+    root = only_yaml_tree(std::string(yaml));
   } catch (const YAML::Exception& error) {
-    throw std::runtime_error(file + ": line " + std::to_string(error.mark.line + 1) + ": no YAML: " + error.msg);
+    throw std::runtime_error(file + ": " + placed_meaning_of(error, std::string(yaml)));
   }
   const auto expected = [&] {
     refuse_place(root, file, "must hold '" + keys.list + ":' and a list, and nothing else");

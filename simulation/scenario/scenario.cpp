@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/files/text_of_file.hpp"
+#include "core/files/yaml_tree.hpp"
 #include "simulation/devices/robot_kind.hpp"
 #include "simulation/scenario/scenario_actors.hpp"
 #include "simulation/scenario/scenario_world.hpp"
@@ -175,9 +176,9 @@ Scenario with_robot(Scenario scenario, const std::string& subtype) {
 Scenario parse_scenario(const std::string& yaml, const std::string& name) {
   YAML::Node root;
   try {
-    root = YAML::Load(yaml);
+    root = only_yaml_tree(yaml);
   } catch (const YAML::Exception& error) {
-    throw std::runtime_error(name + ": line " + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    throw std::runtime_error(name + ": " + placed_meaning_of(error, yaml));
   }
   if (!root.IsMap()) throw std::runtime_error(name + ": line 1: not a scenario (expected 'walls', 'robot', ...)");
   return scenario_of(root, name);

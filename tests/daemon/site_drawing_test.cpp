@@ -133,7 +133,7 @@ TEST_F(SiteDrawingTest, WhatSomebodyWroteIntoTheFileIsNotOverwritten) {
               std::string::npos);
     EXPECT_EQ(content_of(settings_.zones.file), by_hand);
     std::ofstream{settings_.zones.file} << "zones: [\n";
-    EXPECT_NE(error_of(sent({PlaceKind::kZone, seen, "", kBoxZone})).find("no YAML"), std::string::npos);
+    EXPECT_NE(error_of(sent({PlaceKind::kZone, seen, "", kBoxZone})).find("not YAML"), std::string::npos);
     fs::remove(settings_.zones.file);
     EXPECT_NE(error_of(sent({PlaceKind::kZone, seen, "", kBoxZone})).find("zones.yaml: "), std::string::npos);
     EXPECT_FALSE(fs::exists(settings_.zones.file));

@@ -27,6 +27,7 @@ PARTS = {
                  "daemon/settings/memory_places.cpp", "daemon/settings/reader/*.cpp"],
     "rules": ["daemon/dashboard/access.cpp", "navigation/fan.cpp"],
     "control": ["daemon/control/request.cpp"],
+    "site": ["daemon/site/*.cpp", "tool/bays/bay_import.cpp", "tool/bays/bay_table.cpp", "tool/bays/lif_stations.cpp"],
 }
 TARGETS = {
     "arcos": ["pioneer", "drivers", "core"],
@@ -40,6 +41,7 @@ TARGETS = {
     "map": ["core"],
     "config": ["settings", "rules", "pioneer", "lms200", "drivers", "core"],
     "control": ["control", "core"],
+    "site": ["site", "settings", "rules", "pioneer", "lms200", "drivers", "core"],
 }
 LIBRARIES = ["-lyaml-cpp", "-lpng", "-lbz2", "-llz4", "-lzstd"]
 # The beginning of a corpus: patterns below the project.
@@ -49,11 +51,12 @@ SEEDS = {
     "lms200": ["tests/data/lms*.bytes"],
     "laser_session": ["tests/data/lms_*.bytes"],
     "config": ["config/*.yaml"],
+    "site": ["tests/data/site_*.text"],
 }
 
 
 def compiled(source, target, *more):
-    newest = max(file.stat().st_mtime for folder in ("core", "drivers", "tool/import", "daemon/settings", "daemon/control", "tests/fuzz") for file in (ROOT / folder).rglob("*.?pp"))
+    newest = max(file.stat().st_mtime for folder in ("core", "drivers", "tool/import", "daemon/settings", "daemon/control", "daemon/site", "tool/bays", "tests/fuzz") for file in (ROOT / folder).rglob("*.?pp"))
     newest = max(newest, source.stat().st_mtime)
     if not target.exists() or target.stat().st_mtime < newest:
         done = subprocess.run([str(word) for word in [*FLAGS, *more, source, "-o", target]], capture_output=True, text=True)

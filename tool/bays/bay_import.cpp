@@ -34,7 +34,8 @@ Polygon rectangle_of(const Pose2& map_from_bay, const BaySize& size) {
           map_from_bay * Point2{-x, y}};
 }
 
-ImportedBays imported_bays(const std::filesystem::path& file, const std::optional<BaySize>& size) {
+ImportedBays imported_bays(const std::filesystem::path& file, const std::optional<BaySize>& size,
+                           const std::vector<std::string>& layouts) {
   std::string text;
   try {
     text = text_of_file(file);
@@ -42,8 +43,9 @@ ImportedBays imported_bays(const std::filesystem::path& file, const std::optiona
     throw std::runtime_error(file.string() + ": " + error.what());
   }
   const std::string ending = file.extension().string();
+  if (ending == ".lif" || ending == ".json") return bays_of_lif(text, file.string(), size, layouts);
+  if (ending == ".csv" && !layouts.empty()) throw std::runtime_error(file.string() + ": a table has no layouts");
   if (ending == ".csv") return bays_of_csv(text, file.string(), size);
-  if (ending == ".lif" || ending == ".json") return bays_of_lif(text, file.string(), size);
   throw std::runtime_error(file.string() + ": is neither .lif, .json nor .csv: rename it after what it holds");
 }
 

@@ -90,6 +90,8 @@ Bay bay_of(const TableRow& row, const std::optional<BaySize>& size) {
   if (!x_m || !y_m) row.refuse("bay '" + bay.id + "' needs x_m and y_m, or polygon_m");
   const auto along_m = row.number("along_m");
   const auto across_m = row.number("across_m");
+  if (along_m.has_value() != across_m.has_value())
+    row.refuse("bay '" + bay.id + "' has one of along_m and across_m: give both or none");
   const bool has_size = along_m && across_m;
   if (!has_size && !size)
     row.refuse("bay '" + bay.id + "' has no size: give along_m and across_m, or --size ALONGxACROSS in metres");
@@ -114,6 +116,8 @@ ImportedBays bays_of_csv(const std::string& text, const std::string& name, const
       TableRow{name + ": line 1", {}}.refuse("nothing is called '" + column +
                                              "' here: id, name, stationId, x_m, y_m, heading_deg, along_m, across_m, "
                                              "polygon_m");
+    if (std::count(columns.begin(), columns.end(), column) > 1)
+      TableRow{name + ": line 1", {}}.refuse("'" + column + "' stands twice");
   }
   ImportedBays bays;
   for (std::size_t i = 1; i < lines.size(); ++i) {

@@ -43,6 +43,7 @@ struct ImportOptions {
   std::string out;
   std::string size;
   std::string map;
+  std::vector<std::string> layouts;
 };
 
 /// The lines of bays.jsonl, and the states at the end.
@@ -100,7 +101,7 @@ void tell_bays(BaysOptions& options) {
 void import_bays(const ImportOptions& options) {
   require_output_beside(options.out, options.source);
   const auto size = options.size.empty() ? std::nullopt : std::optional{bay_size_in(options.size)};
-  const ImportedBays imported = imported_bays(options.source, size);
+  const ImportedBays imported = imported_bays(options.source, size, options.layouts);
   daemon::require_sound_bays(imported.bays, options.source);
   if (!options.map.empty()) daemon::require_bays_on(grid_file_geometry(options.map), imported.bays, options.source);
   replace_file(options.out, daemon::bays_as_yaml(imported.bays));
@@ -115,6 +116,8 @@ void add_bays_import(CLI::App& bays) {
   command->add_option("--out", options->out, "bays.yaml to write")->required();
   command->add_option("--size", options->size, "ALONGxACROSS of bays that tell no size, m: 2.4x1.2");
   command->add_option("--map", options->map, "map that all of them must lie on");
+  command->add_option("--layout", options->layouts, "layoutId of a LIF file whose stations are read; repeatable")
+      ->allow_extra_args(false);
   command->callback([options] { import_bays(*options); });
 }
 

@@ -27,6 +27,8 @@ LifJson parsed_lif(const std::string& text, const std::string& name) {
         1 +
         std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size())), '\n');
     refuse_lif(name, "line " + std::to_string(line), "no JSON");
+  } catch (const LifJson::out_of_range&) {  // which says no place
+    refuse_lif(name, "", "holds a number that is too large to be read");
   }
 }
 
@@ -73,27 +75,67 @@ void add_station(const LifJson& station, const std::string& name, const std::str
   }
   const auto x_m = number_at(*position, "x");
   const auto y_m = number_at(*position, "y");
-  if (!position->is_object() || !x_m || !y_m) refuse_lif(name, place + "/stationPosition", "needs the numbers x and y");
+  if (!x_m || !y_m) refuse_lif(name, place + "/stationPosition", "needs the numbers x and y");
   if (!size) refuse_lif(name, place, "LIF has no size of stations: give --size ALONGxACROSS in metres");
-  const Pose2 map_from_bay{*x_m, *y_m, wrapped_angle(number_at(*position, "theta").value_or(0.0))};
+  const auto theta_rad = number_at(*position, "theta");
+  if (position->contains("theta") && !theta_rad) refuse_lif(name, place + "/stationPosition/theta", "must be a number");
+  const Pose2 map_from_bay{*x_m, *y_m, wrapped_angle(theta_rad.value_or(0.0))};
   bays.bays.push_back({.id = id,
                        .name = text_in(station, "stationName"),
                        .station_id = id,
                        .polygon = rectangle_of(map_from_bay, *size)});
 }
 
-}  // namespace
+/// One of a file's, as far as it concerns bays.
+struct LifLayout {
+  std::string place;  // "/layouts/0"
+  std::string id;
+  std::string level;  // floor; empty: not said
+  const LifJson* stations = nullptr;
+};
 
-ImportedBays bays_of_lif(const std::string& text, const std::string& name, const std::optional<BaySize>& size) {
-  const LifJson lif = parsed_lif(text, name);
-  require_lif_1(lif, name);
-  ImportedBays bays;
+/// Those with stations.
+std::vector<LifLayout> layouts_in(const LifJson& lif, const std::string& name) {
+  std::vector<LifLayout> found;
   const LifJson& layouts = list_in(lif, "layouts", name, "");
   for (std::size_t i = 0; i < layouts.size(); ++i) {
-    const std::string layout = "/layouts/" + std::to_string(i);
-    const LifJson& stations = list_in(layouts[i], "stations", name, layout);
-    for (std::size_t j = 0; j < stations.size(); ++j)
-      add_station(stations[j], name, layout + "/stations/" + std::to_string(j), size, bays);
+    const std::string place = "/layouts/" + std::to_string(i);
+    const LifJson& stations = list_in(layouts[i], "stations", name, place);
+    if (stations.empty()) continue;
+    found.push_back({place, text_in(layouts[i], "layoutId"), text_in(layouts[i], "layoutLevelId"), &stations});
+  }
+  return found;
+}
+
+void require_layouts(const std::vector<LifLayout>& all, const std::vector<std::string>& wanted,
+                     const std::string& name) {
+  std::string known;
+  for (const LifLayout& layout : all) {
+    known += (known.empty() ? "'" : ", '") + layout.id + "'";
+    if (!layout.level.empty()) known += " of level '" + layout.level + "'";
+  }
+  for (const std::string& id : wanted) {
+    if (std::none_of(all.begin(), all.end(), [&](const LifLayout& layout) { return layout.id == id; }))
+      refuse_lif(name, "/layouts", "has no '" + id + "' with stations: " + (known.empty() ? "none has any" : known));
+  }
+  const auto is_elsewhere = [&](const LifLayout& layout) { return layout.level != all.front().level; };
+  if (wanted.empty() && std::any_of(all.begin(), all.end(), is_elsewhere))
+    refuse_lif(name, "/layouts", "are of several levels, and a map is one: give --layout ID of " + known);
+}
+
+}  // namespace
+
+ImportedBays bays_of_lif(const std::string& text, const std::string& name, const std::optional<BaySize>& size,
+                         const std::vector<std::string>& layouts) {
+  const LifJson lif = parsed_lif(text, name);
+  require_lif_1(lif, name);
+  const std::vector<LifLayout> all = layouts_in(lif, name);
+  require_layouts(all, layouts, name);
+  ImportedBays bays;
+  for (const LifLayout& layout : all) {
+    if (!layouts.empty() && std::find(layouts.begin(), layouts.end(), layout.id) == layouts.end()) continue;
+    for (std::size_t j = 0; j < layout.stations->size(); ++j)
+      add_station((*layout.stations)[j], name, layout.place + "/stations/" + std::to_string(j), size, bays);
   }
   if (bays.bays.empty() && bays.left_out.empty()) refuse_lif(name, "/layouts", "holds no stations");
   return bays;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/settings/reader/settings_reader.hpp"
 
-#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -11,32 +10,12 @@
 #include <string_view>
 #include <utility>
 
+#include "core/files/yaml_tree.hpp"
 #include "daemon/settings/reader/nearest_key.hpp"
 #include "daemon/settings/reader/yaml_text.hpp"
 
 namespace deltamap::daemon {
 namespace {
-
-constexpr std::string_view kBelongsToNothing = "belongs to nothing";  // our own, beside the YAML reader's
-
-/// The YAML reader's words, and what they mean to whoever wrote the file.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kMeanings{{
-    {kBelongsToNothing, "this belongs to no key: look at the indentation of this line and of those above"},
-    {"illegal map value", "a ':' is out of place: look at the indentation, or put the value into quotes"},
-    {"end of map not found", "the indentation does not fit the lines above"},
-    {"end of sequence not found", "the indentation does not fit the lines above"},
-    {"end of map flow not found", "a '{' is not closed"},
-    {"end of sequence flow not found", "a '[' is not closed"},
-    {"unknown escape character", "a backslash in double quotes: write it twice, or use single quotes"},
-    {"bad file", "brackets are nested too deeply"},
-    {"unknown token", "a character that begins no value: put the value into quotes"},
-}};
-
-std::string meaning_of(const std::string& message) {
-  const auto* known =
-      std::find_if(kMeanings.begin(), kMeanings.end(), [&](const auto& one) { return message.starts_with(one.first); });
-  return "not YAML: " + (known == kMeanings.end() ? message : std::string(known->second));
-}
 
 constexpr std::size_t kLongestQuote = 40;  // of what was found, in a mistake
 constexpr std::size_t kLongestName = 100;
@@ -219,40 +198,6 @@ class Walk {
   std::size_t told_ = 0;
 };
 
-/// Notes where a document begins, and forgets what is in it.
-class BeginOfDocument : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark& mark) override { mark_ = mark; }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
-  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
-  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                const std::string& /*value*/) override {}
-  void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                       YAML::EmitterStyle::value /*style*/) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                  YAML::EmitterStyle::value /*style*/) override {}
-  void OnMapEnd() override {}
-
-  [[nodiscard]] YAML::Mark mark() const { return mark_; }
-
- private:
-  YAML::Mark mark_;
-};
-
-/// YAML::Load reads up to where a text leaves its first tree, and says nothing of the rest. Throws YAML::Exception.
-/// Not YAML::LoadAll: where a sign is out of place it never ends.
-YAML::Node only_tree_of(const std::string& yaml) {
-  std::istringstream text(yaml);
-  YAML::Parser parser(text);
-  BeginOfDocument begin;
-  if (parser.HandleNextDocument(begin) && parser.HandleNextDocument(begin)) {
-    throw YAML::ParserException(begin.mark(), kBelongsToNothing.data());
-  }
-  return YAML::Load(yaml);
-}
-
 /// Reads as much as there is to be read: where lines cannot be read together, each part of them alone.
 class PartReader {
  public:
@@ -282,12 +227,12 @@ class PartReader {
     const bool is_behind = line >= end;
     walk_.go_to_line(is_behind ? end - 1 : line);
     const int column = is_behind ? static_cast<int>(lines_[end - 1].text.size()) : error.mark.column;
-    walk_.add_text_problem(1, column + 1, meaning_of(error.msg));
+    walk_.add_text_problem(1, column + 1, meaning_of(error));
   }
 
   std::optional<YAML::Exception> read_together(const std::string& path, std::size_t first, std::size_t last) {
     try {
-      const YAML::Node tree = only_tree_of(text_of(lines_, first, last));
+      const YAML::Node tree = only_yaml_tree(text_of(lines_, first, last));
       walk_.go_to_line(first);
       walk_.read(path, tree, tree);
       return std::nullopt;
@@ -335,10 +280,10 @@ void SettingsReader::read_override(const std::string& text) {
   for (const TextProblem& one : checked.problems) walk.add_text_problem(1, 1, one.what);
   if (!checked.problems.empty()) return;
   try {
-    const YAML::Node tree = only_tree_of(text_of(checked.lines, 0, checked.lines.size()));
+    const YAML::Node tree = only_yaml_tree(text_of(checked.lines, 0, checked.lines.size()));
     walk.read(text.substr(0, equals), tree, tree);
   } catch (const YAML::Exception& error) {
-    walk.add_text_problem(1, 1, meaning_of(error.msg));
+    walk.add_text_problem(1, 1, meaning_of(error));
   }
 }
 

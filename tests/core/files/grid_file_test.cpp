@@ -145,6 +145,8 @@ TEST(GridFile, NamesLineAndKeyOfAWrongDescription) {
   EXPECT_EQ(told(image + image + kKeys), "line 2: 'image' is given twice");
   EXPECT_EQ(told("image: \"m.pgm\nresolution: 0.1\n"), "line 1: not YAML: a quote is not closed");
   EXPECT_EQ(told(image + "origin: [0, 0, 0\n"), "line 2: not YAML: a '[' is not closed");
+  EXPECT_EQ(told(image + kKeys + "...\nnegate: 1\n"),
+            "line 8: not YAML: this belongs to no key: look at the indentation of this line and of those above");
   EXPECT_EQ(told("image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0]\noccupied_thresh: 65\n"),
             "line 4: 'occupied_thresh' must be 0 to 1, not 65 (percent?)");
   EXPECT_EQ(told("image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nfree_thresh: -1\n"),

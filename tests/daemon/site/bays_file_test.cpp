@@ -84,7 +84,9 @@ TEST_F(BaysFile, IsReadStrictly) {
   EXPECT_EQ(complaint("bays:\n  - id: A\n"), "line 2: 'polygon' is missing");
   EXPECT_EQ(complaint("bays:\n  - id: A\n    stationID: 7\n"), "line 3: nothing is called 'stationID' here");
   EXPECT_EQ(complaint("zones: []\n"), "line 1: must hold 'bays:' and a list, and nothing else");
-  EXPECT_EQ(complaint("bays: [\n"), "line 2: no YAML: end of sequence flow not found");
+  EXPECT_EQ(complaint("bays: [\n"), "line 1: not YAML: a '[' is not closed");
+  EXPECT_EQ(complaint("bays: []\n---\nbays: []\n"),
+            "line 2: not YAML: this belongs to no key: look at the indentation of this line and of those above");
   EXPECT_EQ(complaint("bays:\n  - 7\n"), "line 2: an entry of 'bays' must hold keys and values");
 }
 

@@ -53,7 +53,7 @@ TEST(Scenario, RefusesWrongTypesAndRangesWithTheirLine) {
   EXPECT_EQ(complaint_of("walls:\n  - [[0, 0], [10, 0]]\nrobot:\n  start: [1, 0.1, 0]\n"),
             "world.yaml: line 4: 'start' puts the robot into a wall, a container or a post");
   EXPECT_EQ(complaint_of(""), "world.yaml: line 1: not a scenario (expected 'walls', 'robot', ...)");
-  EXPECT_EQ(complaint_of("walls: [\n"), "world.yaml: line 2: end of sequence flow not found");
+  EXPECT_EQ(complaint_of("walls: [\n"), "world.yaml: line 1: not YAML: a '[' is not closed");
 }
 
 TEST(Scenario, ReadsRacksGlassAndWrappedPallets) {

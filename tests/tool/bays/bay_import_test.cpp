@@ -62,12 +62,52 @@ TEST(BayImport, SaysInOneLineWhatIsWrongWithALif) {
   EXPECT_EQ(lif_complaint(later),
             "site.lif: /metaInformation/lifVersion: is '2.0.0': only LIF 1 is known, export it as 1.0.0");
   EXPECT_EQ(lif_complaint("{\n\"a\": }"), "site.lif: line 2: no JSON");
+  EXPECT_EQ(lif_complaint("[1e999]"), "site.lif: holds a number that is too large to be read");
   EXPECT_EQ(lif_complaint("{}"), "site.lif: /metaInformation/lifVersion: is missing: this is no LIF file");
   EXPECT_EQ(lif_complaint(R"({"metaInformation": {"lifVersion": "1.0.0"}, "layouts": []})"),
             "site.lif: /layouts: holds no stations");
   EXPECT_EQ(lif_complaint(R"({"metaInformation": {"lifVersion": "1.0.0"}, "layouts": [{"stations": [{"stationId": "A",
              "stationPosition": {"x": "1", "y": 2}}]}]})"),
             "site.lif: /layouts/0/stations/0/stationPosition: needs the numbers x and y");
+  std::string turned = kLif;
+  turned.replace(turned.find("1.5707963"), 9, "\"north\"");
+  EXPECT_EQ(lif_complaint(turned), "site.lif: /layouts/0/stations/0/stationPosition/theta: must be a number");
+  EXPECT_EQ(lif_complaint(R"({"metaInformation": {"lifVersion": "1.0.0"}, "layouts": [{"stations": [{"stationId": "A",
+             "stationPosition": [1, 2]}]}]})"),
+            "site.lif: /layouts/0/stations/0/stationPosition: needs the numbers x and y");
+}
+
+/// A layout with one station.
+std::string layout_of(const std::string& id, const std::string& level, const std::string& station) {
+  return R"({"layoutId": ")" + id + R"(", "layoutLevelId": ")" + level + R"(", "stations": [{"stationId": ")" +
+         station + R"(", "stationPosition": {"x": 1, "y": 2}}]})";
+}
+
+std::string lif_of(const std::string& layouts) {
+  return R"({"metaInformation": {"lifVersion": "1.0.0"}, "layouts": [)" + layouts + "]}";
+}
+
+TEST(BayImport, LayoutsOfOneFloorAreReadTogether) {
+  const std::string lif = lif_of(layout_of("L1", "0", "A") + "," + layout_of("L2", "0", "B"));
+  EXPECT_EQ(bays_of_lif(lif, "site.lif", kSize).bays.size(), 2u);
+}
+
+TEST(BayImport, StationsOfAnotherFloorAreNeverReadAsOnes) {
+  const std::string lif =
+      lif_of(layout_of("L1", "0", "A") + "," + layout_of("L2", "1", "B") + R"(, {"layoutId": "empty"})");
+  EXPECT_EQ(lif_complaint(lif),
+            "site.lif: /layouts: are of several levels, and a map is one: give --layout ID of 'L1' of level '0', 'L2' "
+            "of level '1'");
+  const ImportedBays upper = bays_of_lif(lif, "site.lif", kSize, {"L2"});
+  ASSERT_EQ(upper.bays.size(), 1u);
+  EXPECT_EQ(upper.bays[0].id, "B");
+  try {
+    (void)bays_of_lif(lif, "site.lif", kSize, {"empty"});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "site.lif: /layouts: has no 'empty' with stations: 'L1' of level '0', 'L2' of level '1'");
+  }
 }
 
 TEST(BayImport, ATableGivesMiddlesOrPolygons) {
@@ -98,6 +138,9 @@ TEST(BayImport, SaysInOneLineWhatIsWrongWithATable) {
             "across_m, polygon_m");
   EXPECT_EQ(csv_complaint("id,polygon_m\nA,1 2\n"), "bays.csv: line 2: 'polygon_m' needs at least three corners");
   EXPECT_EQ(csv_complaint(""), "bays.csv: is empty");
+  EXPECT_EQ(csv_complaint("id,x_m,y_m,x_m\nA,1,2,3\n"), "bays.csv: line 1: 'x_m' stands twice");
+  EXPECT_EQ(csv_complaint("id,x_m,y_m,along_m\nA,1,2,3\n"),
+            "bays.csv: line 2: bay 'A' has one of along_m and across_m: give both or none");
 }
 
 TEST(BayImport, ASizeIsTwoLengths) {

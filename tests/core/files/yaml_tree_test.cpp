@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/files/yaml_tree.hpp"
+
+#include <gtest/gtest.h>
+
+namespace deltamap {
+namespace {
+
+const std::string kOfNoKey =
+    "not YAML: this belongs to no key: look at the indentation of this line and of those above";
+
+std::string told(const std::string& text) {
+  try {
+    (void)only_yaml_tree(text);
+    return "";
+  } catch (const YAML::Exception& error) {
+    return placed_meaning_of(error, text);
+  }
+}
+
+TEST(YamlTree, ATextIsReadWhole) {
+  EXPECT_EQ(only_yaml_tree("a: 1\nb: 2\n")["b"].as<int>(), 2);
+  EXPECT_EQ(only_yaml_tree("---\na: 1\n...\n")["a"].as<int>(), 1);
+  EXPECT_TRUE(only_yaml_tree("").IsNull());
+  EXPECT_TRUE(only_yaml_tree("# nothing yet\n").IsNull());
+}
+
+TEST(YamlTree, WhatStandsBehindTheFirstTreeIsTold) {
+  EXPECT_EQ(told("a: 1\n---\nb: 2\n"), "line 2: " + kOfNoKey);
+  EXPECT_EQ(told("a: 1\n...\nb: 2\n"), "line 3: " + kOfNoKey);
+  EXPECT_EQ(told("  a: 1\nb: 2\n"), "line 2: " + kOfNoKey);
+}
+
+TEST(YamlTree, MistakesAreToldInWordsWithALineThatIsThere) {
+  EXPECT_EQ(told("a: [1, 2\n"), "line 1: not YAML: a '[' is not closed");
+  EXPECT_EQ(told("a: {b: 2"), "line 1: not YAML: a '{' is not closed");
+  EXPECT_EQ(told("a: 1\n b: 2\n").substr(0, 32), "line 2: not YAML: a ':' is out o");
+  EXPECT_EQ(told("a: \"\\q\"\n"),
+            "line 1: not YAML: a backslash in double quotes: write it twice, or use single quotes");
+  EXPECT_EQ(told("a: 1\n? b\n"), "");  // valid, if odd
+}
+
+TEST(YamlTree, WordsThatNobodyHasExplainedStandAsTheyAre) {
+  EXPECT_EQ(meaning_of(YAML::Exception(YAML::Mark::null_mark(), "some new words")), "not YAML: some new words");
+}
+
+}  // namespace
+}  // namespace deltamap
