@@ -96,16 +96,18 @@ class BranchAndBound {
   /// 0 where it cannot be above `least`.
   [[nodiscard]] std::uint32_t sum_of(int level, std::size_t rotation, int column, int row, std::uint32_t least) const {
     const Rotation& of = rotations_[rotation];
-    const CorrelationField::Level& values = field_.level(level);
-    if (values.reaches(of.first.column + column, of.first.row + row) &&
-        values.reaches(of.last.column + column, of.last.row + row)) {
-      const std::uint8_t* const middle = values.at(column, row);
-      const std::ptrdiff_t stride = values.stride();
-      return sum_over(of.cells, least, [=](const Cell& cell) { return middle[cell.row * stride + cell.column]; });
+    const CorrelationField::Level& at = field_.level(level);
+    const std::uint8_t* const values = at.values();
+    if (at.reaches(of.first.column + column, of.first.row + row) &&
+        at.reaches(of.last.column + column, of.last.row + row)) {
+      const std::ptrdiff_t middle = at.index_of(column, row);
+      const std::ptrdiff_t stride = at.stride();
+      return sum_over(of.cells, least,
+                      [=](const Cell& cell) { return values[middle + cell.row * stride + cell.column]; });
     }
     return sum_over(of.cells, least, [&](const Cell& cell) {
-      const bool is_reached = values.reaches(cell.column + column, cell.row + row);
-      return is_reached ? *values.at(cell.column + column, cell.row + row) : std::uint8_t{0};
+      const bool is_reached = at.reaches(cell.column + column, cell.row + row);
+      return is_reached ? values[at.index_of(cell.column + column, cell.row + row)] : std::uint8_t{0};
     });
   }
 
@@ -215,12 +217,9 @@ CorrelationField::CorrelationField(std::span<const Point2> ends, double resoluti
 
 void CorrelationField::Level::lay_around(Cell end) {
   static const std::array<StampRow, 2 * kStampCells + 1> stamp = stamp_of_an_end();
-  if (*at(end.column, end.row) == kFull) return;  // an end lies there already
-  std::uint8_t* values = row(end.row - kStampCells) + end.column - kStampCells;
-  for (const StampRow& of : stamp) {
-    raise_to(of, values);
-    values += width_;
-  }
+  if (row(end.row)[end.column] == kFull) return;  // an end lies there already
+  int y = end.row - kStampCells;
+  for (const StampRow& of : stamp) raise_to(of, row(y++) + end.column - kStampCells);
 }
 
 CorrelationField::Level CorrelationField::Level::coarser(int reach) const {

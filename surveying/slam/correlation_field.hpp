@@ -37,9 +37,10 @@ class CorrelationField {
       return static_cast<unsigned>(column + border_) < static_cast<unsigned>(width_) &&
              static_cast<unsigned>(row + border_) < static_cast<unsigned>(height_);
     }
-    /// Of the cell, which it must reach; those beside it follow, those of the next row stride() on.
-    [[nodiscard]] const std::uint8_t* at(int column, int row) const {
-      return values_.data() + std::ptrdiff_t{row + border_} * width_ + column + border_;
+    [[nodiscard]] const std::uint8_t* values() const { return values_.data(); }
+    /// Of a cell in values(), where it is reached; those beside it follow, those of the next row stride() on.
+    [[nodiscard]] std::ptrdiff_t index_of(int column, int row) const {
+      return std::ptrdiff_t{row + border_} * width_ + column + border_;
     }
     [[nodiscard]] int stride() const { return width_; }
 
