@@ -27,7 +27,7 @@ LifJson parsed_lif(const std::string& text, const std::string& name) {
         1 +
         std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size())), '\n');
     refuse_lif(name, "line " + std::to_string(line), "no JSON");
-  } catch (const LifJson::out_of_range&) {  // which says no place
+  } catch (const LifJson::out_of_range&) {  // nlohmann 3.11.2: out_of_range.406, no parse_error, and it says no place
     refuse_lif(name, "", "holds a number that is too large to be read");
   }
 }
