@@ -65,14 +65,18 @@ Pose2 checked(const Pose2& pose) {
 
 std::string without_slash(std::string_view frame) { return std::string(frame.substr(frame.starts_with('/') ? 1 : 0)); }
 
-/// ROS 1 packs its fields; CDR aligns each to its size, from behind its head of four bytes.
+/// ROS 1 packs its fields; CDR aligns each to its size, from behind its head of four bytes; its second version, XCDR2,
+/// aligns none to more than four.
 class Fields {
  public:
-  Fields(std::string_view data, bool is_cdr) : reader_{is_cdr ? behind_head(data) : data}, is_cdr_{is_cdr} {}
+  Fields(std::string_view data, bool is_cdr)
+      : reader_{data.substr(is_cdr ? std::min(kHeadBytes, data.size()) : 0)},
+        is_cdr_{is_cdr},
+        most_aligned_{is_cdr ? alignment_of(data) : 1} {}
 
   template <typename Number>
   Number number() {
-    if (is_cdr_) reader_.align(sizeof(Number));
+    reader_.align(std::min(sizeof(Number), most_aligned_));
     return reader_.number<Number>();
   }
   std::string_view text() {
@@ -106,16 +110,24 @@ class Fields {
   }
 
  private:
-  static std::string_view behind_head(std::string_view data) {
+  static constexpr std::size_t kHeadBytes = 4;
+
+  /// By the kind of encoding, which the head's first two bytes tell: XCDR2 of final types has two numbers, RTPS's 0x07
+  /// and DDS-XTypes' 0x11, and @foxglove/cdr 3.5.0 writes either.
+  static std::size_t alignment_of(std::string_view data) {
     ByteReader head{data};
-    (void)head.number<std::uint8_t>();
-    if ((head.number<std::uint8_t>() & 1U) == 0)
-      throw std::runtime_error("its bytes are big-endian CDR, which is not read");
-    return data.substr(std::min<std::size_t>(4, data.size()));
+    const auto high = head.number<std::uint8_t>();
+    const auto low = head.number<std::uint8_t>();
+    if ((low & 1U) == 0) throw std::runtime_error("its bytes are big-endian CDR, which is not read");
+    if (high == 0 && low == 0x01) return 8;
+    if (high == 0 && (low == 0x07 || low == 0x11)) return 4;
+    throw std::runtime_error("its bytes are CDR of kind " + std::to_string(256 * high + low) +
+                             ": 1, 7 and 17 are read, which have nothing between their fields");
   }
 
   ByteReader reader_;
   bool is_cdr_;
+  std::size_t most_aligned_;
 };
 
 RosScan scan_of_fields(Fields fields) {

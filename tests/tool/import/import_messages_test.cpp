@@ -113,6 +113,28 @@ TEST_F(ImportMessages, TakesScansAndOdometryOfMcapInBothOfRosEncodings) {
   expect_the_drive(import_messages(wanted(mcap_of(ros2, "cdr", "zstd"), false)));
 }
 
+TEST_F(ImportMessages, ReadsXcdr2WhichAlignsDoublesToFourBytes) {
+  for (const char kind : {char{7}, char{17}}) {
+    auto ros2 = drive(true, "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry");
+    for (TestMessage& message : ros2) {
+      if (message.topic != "/odom") continue;
+      const double i = std::round((message.time_s - kBegin_s) / 0.125);
+      message.bytes = odometry_bytes(message.time_s, 0.05 * i, 0.01 * i, true, kind);
+    }
+    expect_the_drive(import_messages(wanted(mcap_of(ros2, "cdr", ""), false)));
+  }
+}
+
+TEST_F(ImportMessages, LeavesOutCdrThatHasLengthsBetweenItsFields) {
+  auto ros2 = drive(true, "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry");
+  ros2.push_back({"/odom", "nav_msgs/msg/Odometry", kBegin_s + 3.0, odometry_bytes(kBegin_s + 3.0, 9.0, 0, true, 9)});
+  const ImportedMessages done = import_messages(wanted(mcap_of(ros2, "cdr", ""), false));
+  expect_the_drive(done);
+  bool is_told = false;
+  for (const std::string& note : done.notes) is_told = is_told || note.find("CDR of kind 9") != std::string::npos;
+  EXPECT_TRUE(is_told);
+}
+
 TEST_F(ImportMessages, TakesThePoseFromTransformsAndTellsTheMountThatTheyHave) {
   std::vector<TestMessage> messages;
   messages.push_back({"/tf_static", "tf2_msgs/TFMessage", kBegin_s,

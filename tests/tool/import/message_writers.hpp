@@ -6,6 +6,7 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -22,13 +23,14 @@ inline std::string with_length(std::string_view text) {
   return le(static_cast<std::uint32_t>(text.size())) + std::string(text);
 }
 
-/// ROS 1's bytes, or CDR with its head and its padding.
+/// ROS 1's bytes, or CDR with its head and its padding; `kind` in its head: 1, or 7 or 17 of XCDR2.
 class RosBytes {
  public:
-  explicit RosBytes(bool is_cdr) : is_cdr_{is_cdr} {}
+  explicit RosBytes(bool is_cdr, char kind = 1) : is_cdr_{is_cdr}, kind_{kind} {}
   template <typename Number>
   RosBytes& add(Number value) {
-    if (is_cdr_) bytes_.resize((bytes_.size() + sizeof value - 1) / sizeof value * sizeof value, '\0');
+    const std::size_t aligned = kind_ == 1 ? sizeof value : std::min<std::size_t>(4, sizeof value);
+    if (is_cdr_) bytes_.resize((bytes_.size() + aligned - 1) / aligned * aligned, '\0');
     bytes_ += le(value);
     return *this;
   }
@@ -48,10 +50,13 @@ class RosBytes {
     for (const double value : {x, y, 0.0, 0.0, 0.0, std::sin(0.5 * theta), std::cos(0.5 * theta)}) add(value);
     return *this;
   }
-  [[nodiscard]] std::string bytes() const { return (is_cdr_ ? std::string("\0\1\0\0", 4) : "") + bytes_; }
+  [[nodiscard]] std::string bytes() const {
+    return (is_cdr_ ? std::string{'\0', kind_, '\0', '\0'} : std::string{}) + bytes_;
+  }
 
  private:
   bool is_cdr_;
+  char kind_;
   std::string bytes_;
 };
 
@@ -72,8 +77,8 @@ inline std::string scan_bytes(const TestScan& scan, bool is_cdr) {
   for (const float range_m : scan.ranges_m) out.add(range_m);
   return out.add(std::uint32_t{0}).bytes();  // intensities
 }
-inline std::string odometry_bytes(double time_s, double x, double theta, bool is_cdr) {
-  RosBytes out{is_cdr};
+inline std::string odometry_bytes(double time_s, double x, double theta, bool is_cdr, char kind = 1) {
+  RosBytes out{is_cdr, kind};
   out.header(time_s, "odom").text("base_link").pose(x, 0.0, theta);
   for (int i = 0; i < 36 + 6 + 36; ++i) out.add(0.0);
   return out.bytes();
