@@ -9,8 +9,8 @@ namespace deltamap::daemon {
 namespace {
 
 constexpr std::chrono::minutes kPeriod{1};
-constexpr std::array<std::string_view, 5> kEachForItself{
-    "ctl: ", "map changed: ", "map unchanged: ", "reload: ", "pose proved wrong: "};
+constexpr std::array<std::string_view, 8> kEachForItself{
+    "ctl: ", "map changed: ", "map unchanged: ", "reload: ", "pose proved wrong: ", "thing ", "bay ", "incident "};
 
 bool stands_for_itself(const LeveledLine& line) {
   return std::any_of(kEachForItself.begin(), kEachForItself.end(),

@@ -26,8 +26,8 @@ class LogThrottle {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// The line where it is to be written now. What an operator asked for and what became of a Δ-phase always are: each
-  /// of these stands for itself.
+  /// The line where it is to be written now. What an operator asked for, what became of a Δ-phase, and what is told of
+  /// a thing, a bay or an incident always are: each of these stands for itself, and two may differ in a number alone.
   [[nodiscard]] std::optional<LeveledLine> take(LeveledLine line, Clock::time_point now);
   /// About once a second: what was held back and is due.
   [[nodiscard]] std::vector<LeveledLine> due(Clock::time_point now);

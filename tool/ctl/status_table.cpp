@@ -6,6 +6,8 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.hpp"
+
 namespace deltamap::tool {
 namespace {
 
@@ -95,8 +97,8 @@ std::string scans_line(const Json& s) {
     (void)std::snprintf(text, sizeof text, "%.1f ms", number(s, "/latency_ms"));
     latency = text;
   }
-  return line("scans", "%.0f, %.0f localized, %.0f messages dropped, latency %s", number(s, "/scans"),
-              number(s, "/localized"), drops, latency.c_str());
+  return line("scans", "%.0f, %.0f localized, %s dropped, latency %s", number(s, "/scans"), number(s, "/localized"),
+              counted(static_cast<std::uint64_t>(drops), "message").c_str(), latency.c_str());
 }
 
 /// What driving has told of the wheels and of the laser's mount, with deviations.
