@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "daemon/maps/stored_things.hpp"
 #include "daemon/steps/thing_looks.hpp"
@@ -29,6 +30,7 @@ constexpr double kLookEvery_s = 0.2;
 constexpr int kLookBeams = 181;
 constexpr int kLookFaceBeams = 3;
 constexpr double kSeenForThings_s = 10.0;
+constexpr double kFaceSeen_s = 3.0;  // for a change to have been seen all around
 constexpr double kSolidEvery_s = 60.0;
 constexpr double kThingsMinutes = 30.0;
 constexpr double kQuickThingsMinutes = 5.0;
@@ -124,27 +126,35 @@ Followed followed(const ThingsRun& run) {
       all.solid.add(truth, drive.map(), mapping::things::assumed_cells(things.all(), drive.map()));
     }
   }
-  all.changes = true_changes(watch.watched(), kSeenForThings_s);
+  all.changes = true_changes(watch.watched(), kSeenForThings_s, kFaceSeen_s);
   all.things = things.all().size();
   all.assumed = assumed_score_of(things.all(), boxes_in(watch.world()));
   return all;
 }
 
+double whole(std::size_t number) { return static_cast<double>(number); }
+
+/// Of the changes that the score is of, under names that begin with `of`.
+void add_change_numbers(Outcome& outcome, const std::string& of, const ThingScore& score) {
+  const std::array<std::pair<const char*, std::size_t>, 8> numbers{{{"changes", score.changes},
+                                                                    {"unfound", score.unfound},
+                                                                    {"events", score.events},
+                                                                    {"most_events", score.most_events},
+                                                                    {"right", score.right},
+                                                                    {"right_size", score.right_size},
+                                                                    {"moved", score.moved},
+                                                                    {"moved_right", score.moved_right}}};
+  for (const auto& [name, number] : numbers) outcome.numbers.emplace_back(of + name, whole(number));
+}
+
 Outcome outcome_of(const ThingsRun& run, const std::string& world, std::uint64_t seed) {
   const Followed all = followed(run);
-  const ThingScore score = score_of(told_at_last(all.events, mapping::things::ThingsParams{}.one_look_s), all.changes);
-  const auto whole = [](std::size_t number) { return static_cast<double>(number); };
+  const std::vector<Told> told = told_at_last(all.events, mapping::things::ThingsParams{}.one_look_s);
+  const ThingScore score = score_of(told, all.changes);
+  const ThingScore around = score_of(told, only_seen_all_around(all.changes));
   Outcome outcome;
   outcome.labels = {{"world", world}, {"seed", std::to_string(seed)}};
-  outcome.numbers = {{"changes_seen", whole(score.changes)},
-                     {"unfound", whole(score.unfound)},
-                     {"events", whole(score.events)},
-                     {"most_events", whole(score.most_events)},
-                     {"right", whole(score.right)},
-                     {"right_size", whole(score.right_size)},
-                     {"moved", whole(score.moved)},
-                     {"moved_right", whole(score.moved_right)},
-                     {"told", whole(score.told)},
+  outcome.numbers = {{"told", whole(score.told)},
                      {"told_of_nothing", whole(score.wrong)},
                      {"told_moved", whole(score.told_moved)},
                      {"wrong_pairs", whole(score.wrong_pairs)},
@@ -161,6 +171,8 @@ Outcome outcome_of(const ThingsRun& run, const std::string& world, std::uint64_t
                      {"minutes", run.minutes},
                      {"cell_kb", whole(all.most_cell_bytes) / 1e3},
                      {"revision_cpu_ms", all.revisions == 0 ? 0.0 : 1e3 * all.cpu_s / whole(all.revisions)}};
+  add_change_numbers(outcome, "", score);
+  add_change_numbers(outcome, "around_", around);
   return outcome;
 }
 
@@ -210,7 +222,26 @@ std::vector<Run> things_runs(const Options& options) {
 
 constexpr Ratio kSolidSeen{"solid_seen", "solid_looks"};
 constexpr Ratio kSolidAssumed{"solid_assumed", "solid_looks"};
-constexpr Ratio kChangesRight{"right", "changes_seen"};
+constexpr Ratio kChangesRight{"right", "changes"};
+
+/// Of the changes whose numbers begin with `of`.
+void add_change_figures(Report& report, const std::string& world, const std::vector<const Outcome*>& of_it,
+                        const std::string& which, const std::string& of) {
+  const std::string changes = of + "changes";
+  const std::string head = world + ": " + which + ": ";
+  const auto ratio = [&](const char* name, const std::string& number, const std::string& to,
+                         const std::optional<Target>& target = {}) {
+    report.figures.push_back(ratio_of_runs(head + name, of_it, {number, to}, target));
+  };
+  report.figures.push_back(sum_of_runs(head + "changes", of_it, changes));
+  ratio("events a change, mean", of + "events", changes, Target{.most = 1.1});
+  report.figures.push_back(
+      most_of_runs(head + "events of one change, most", of_it, of + "most_events", Target{.most = 3.0}));
+  ratio("changes of which nothing was told", of + "unfound", changes);
+  ratio("kind and place right", of + "right", changes, Target{.least = 0.97});
+  ratio("of those: both sides within 0.15 m", of + "right_size", of + "right", Target{.least = 0.9});
+  ratio("moved things told as moved", of + "moved_right", of + "moved", Target{.least = 0.9});
+}
 
 void add_figures(Report& report, const std::string& world, const std::vector<const Outcome*>& of_it) {
   const auto ratio = [&](const char* name, const Ratio& of, const std::optional<Target>& target = {}) {
@@ -227,24 +258,17 @@ void add_figures(Report& report, const std::string& world, const std::vector<con
   ratio("assumed cells that are solid", {"assumed_solid", "assumed_cells"});
   ratio("assumed sides within 0.15 m at the end", {"assumed_right", "assumed_sides"});
   sum("assumed sides of what was seen all around", "assumed_of_seen", Target{.most = 0.0});
-  if (std::all_of(of_it.begin(), of_it.end(), [](const Outcome* run) { return run->number("changes_seen") == 0.0; }))
-    return;
-  sum("changes that were seen for 10 s", "changes_seen");
-  ratio("events a change, mean", {"events", "changes_seen"}, Target{.most = 1.1});
-  report.figures.push_back(
-      most_of_runs(world + ": events of one change, most", of_it, "most_events", Target{.most = 3.0}));
-  ratio("changes of which nothing was told", {"unfound", "changes_seen"});
-  ratio("kind and place right", kChangesRight, Target{.least = 0.97});
-  ratio("of those: both sides within 0.15 m", {"right_size", "right"}, Target{.least = 0.9});
-  ratio("moved things told as moved", {"moved_right", "moved"}, Target{.least = 0.9});
+  if (std::all_of(of_it.begin(), of_it.end(), [](const Outcome* run) { return run->number("changes") == 0.0; })) return;
+  add_change_figures(report, world, of_it, "seen for 10 s", "");
+  add_change_figures(report, world, of_it, "seen all around", "around_");
   ratio("events \"moved\" that were none", {"wrong_pairs", "told"}, Target{.most = 0.02});
 }
 
 TextTable table_of_runs(const std::vector<Outcome>& outcomes) {
-  constexpr std::array kColumns{"changes_seen", "unfound",         "events",        "most_events",
-                                "right",        "right_size",      "moved",         "moved_right",
-                                "told",         "told_of_nothing", "told_moved",    "wrong_pairs",
-                                "revisions",    "things",          "assumed_sides", "assumed_right"};
+  constexpr std::array kColumns{"changes",   "unfound",         "events",        "most_events",
+                                "right",     "right_size",      "moved",         "moved_right",
+                                "told",      "told_of_nothing", "told_moved",    "wrong_pairs",
+                                "revisions", "things",          "assumed_sides", "assumed_right"};
   TextTable table{"Each run", {"world", "seed"}, {}};
   table.columns.insert(table.columns.end(), kColumns.begin(), kColumns.end());
   for (const Outcome& outcome : outcomes) {

@@ -72,19 +72,27 @@ const TrueChange* change_of(const Told& told, std::span<const TrueChange> change
   return newest;
 }
 
-std::vector<TrueChange> true_changes(std::span<const simulation::score::Watched> watched, double seen_least_s) {
+std::vector<TrueChange> true_changes(std::span<const simulation::score::Watched> watched, double seen_least_s,
+                                     double face_least_s) {
   std::vector<TrueChange> changes;
   for (const simulation::score::Watched& one : watched) {
     const simulation::score::ScoredChange& half = one.change;
     const bool is_seen = one.is_told_apart && one.witness.longest_seen_s() >= seen_least_s;
     const bool is_second = half.appears && half.kind != simulation::ChangeKind::kAdded && !changes.empty() &&
                            changes.back().time == half.time;
-    if (!is_second) changes.push_back({half.time, half.kind, {}, {}, true});
+    if (!is_second) changes.push_back({half.time, half.kind, {}, {}, true, true});
     TrueChange& change = changes.back();
     (half.appears ? change.at : change.from) = half.box;
     change.is_seen = change.is_seen && is_seen;
+    change.is_seen_all_around = change.is_seen_all_around && is_seen && one.is_seen_all_around(face_least_s);
   }
   return changes;
+}
+
+std::vector<TrueChange> only_seen_all_around(std::span<const TrueChange> changes) {
+  std::vector<TrueChange> only{changes.begin(), changes.end()};
+  for (TrueChange& change : only) change.is_seen = change.is_seen && change.is_seen_all_around;
+  return only;
 }
 
 std::vector<Told> told_at_last(std::span<const ThingEvent> events, double one_look_s) {

@@ -21,11 +21,16 @@ struct TrueChange {
   /// Each of its places for long enough, and what they were before had been in view: who has not seen a container go
   /// cannot tell the next one on its floor from it.
   bool is_seen = false;
+  /// Seen, and so was each face of each of its places that shows to the robot's floor at all.
+  bool is_seen_all_around = false;
 };
 
-/// A removal, an addition, or both of a shift.
+/// A removal, an addition, or both of a shift. `seen_least_s`: of the face that was seen longest; `face_least_s`: of
+/// each.
 [[nodiscard]] std::vector<TrueChange> true_changes(std::span<const simulation::score::Watched> watched,
-                                                   double seen_least_s);
+                                                   double seen_least_s, double face_least_s);
+/// As if those alone had been seen that were seen all around.
+[[nodiscard]] std::vector<TrueChange> only_seen_all_around(std::span<const TrueChange> changes);
 
 /// What was told of a thing until it was told to be of another kind, with how it was told at last.
 struct Told {

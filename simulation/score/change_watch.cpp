@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/score/change_watch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -31,17 +32,19 @@ ChangeWatch::ChangeWatch(const Scenario& scenario, const GridGeometry& geometry)
 void ChangeWatch::apply(const Change& change, Timestamp time, const Point2& robot) {
   if (change.kind != ChangeKind::kAdded) {
     const Box& left = change.from.value_or(change.box);
-    add({time, change.kind, false, change.id, left},
-        Witness::of_disappearance(left, geometry_, visible_surface(left, robot)));
+    const std::unordered_set<std::size_t> visible = visible_surface(left, robot);
+    add({time, change.kind, false, change.id, left}, Witness::of_disappearance(left, geometry_, visible), visible);
   }
   world_ = changed(world_, change);
   surfaces_ = RayCaster{world_};
   if (change.kind != ChangeKind::kRemoved) {
-    add({time, change.kind, true, change.id, change.box}, Witness::of_appearance(change.id, change.box, geometry_));
+    add({time, change.kind, true, change.id, change.box}, Witness::of_appearance(change.id, change.box, geometry_),
+        visible_surface(change.box, robot));
   }
 }
 
-void ChangeWatch::add(const ScoredChange& change, Witness witness) {
+void ChangeWatch::add(const ScoredChange& change, Witness witness,
+                      const std::unordered_set<std::size_t>& visible_surface) {
   const bool is_told = is_told_apart(change);
   for (Watched& earlier : watched_) {
     if (earlier.change.time >= change.time || !overlap(grown(earlier.change.box, kSamePlace_m), change.box)) continue;
@@ -49,7 +52,9 @@ void ChangeWatch::add(const ScoredChange& change, Witness witness) {
     earlier.change.is_overtaken = true;
     earlier.is_replaced = earlier.is_replaced || is_same_place(earlier.change.box, change.box);
   }
-  watched_.push_back({change, std::move(witness), is_told});
+  Watched watched{change, std::move(witness), is_told};
+  watched.faces_that_show = faces_that_show(change.box, visible_surface);
+  watched_.push_back(std::move(watched));
 }
 
 /// Against what was in view last of the place; else against what it was at the beginning.
@@ -71,6 +76,32 @@ std::unordered_set<std::size_t> ChangeWatch::visible_surface(const Box& box, con
     if (seen.at(cell) == CellState::kOccupied) cells.insert(geometry_.index_of(cell));
   }
   return cells;
+}
+
+std::array<bool, 4> ChangeWatch::faces_that_show(const Box& box,
+                                                 const std::unordered_set<std::size_t>& visible_surface) const {
+  const std::array<Segment, 4> sides = faces(box);
+  std::array<double, 4> shown_m{};
+  for (const Cell cell : surface_cells(box, geometry_)) {
+    if (!visible_surface.contains(geometry_.index_of(cell))) continue;
+    const Point2 place = geometry_.centre_of(cell);
+    const auto nearer = [&](const Segment& a, const Segment& b) {
+      return distance_between(place, a) < distance_between(place, b);
+    };
+    const auto side = std::min_element(sides.begin(), sides.end(), nearer) - sides.begin();
+    shown_m.at(static_cast<std::size_t>(side)) += geometry_.resolution_m;
+  }
+  std::array<bool, 4> shows{};
+  for (std::size_t side = 0; side < sides.size(); ++side)
+    shows[side] = shown_m[side] > 0.5 * (sides[side].to - sides[side].from).norm();
+  return shows;
+}
+
+bool Watched::is_seen_all_around(double seen_least_s) const {
+  for (std::size_t face = 0; face < faces_that_show.size(); ++face) {
+    if (faces_that_show[face] && witness.faces_seen_s()[face] < seen_least_s) return false;
+  }
+  return true;
 }
 
 std::vector<TrueBeam> ChangeWatch::view_from(const Pose2& map_from_laser, double range_m, int beams,

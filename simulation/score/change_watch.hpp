@@ -3,9 +3,11 @@
 // followed it. Told of everything that happens, in order of time.
 #pragma once
 
+#include <array>
 #include <numbers>
 #include <optional>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "simulation/movers/movers.hpp"
@@ -22,8 +24,12 @@ struct Watched {
   Witness witness;            ///< until it was overtaken
   bool is_told_apart = true;  ///< what its place was before had been in view: else nobody can tell that this is another
   bool was_in_view = false;   ///< for one look at least, until the same place changed again
-  std::optional<Witness> later{};  ///< from when it was overtaken on, until then
-  bool is_replaced = false;        ///< the same place has changed again
+  std::array<bool, 4> faces_that_show{};  ///< to the floor on which the robot stood: more than half of each
+  std::optional<Witness> later{};         ///< from when it was overtaken on, until then
+  bool is_replaced = false;               ///< the same place has changed again
+
+  /// Each face that shows was seen for so long, until it was overtaken.
+  [[nodiscard]] bool is_seen_all_around(double seen_least_s) const;
 };
 
 class ChangeWatch {
@@ -55,9 +61,11 @@ class ChangeWatch {
   [[nodiscard]] std::vector<Watched>& watched() { return watched_; }
 
  private:
-  void add(const ScoredChange& change, Witness witness);
+  void add(const ScoredChange& change, Witness witness, const std::unordered_set<std::size_t>& visible_surface);
   [[nodiscard]] bool is_told_apart(const ScoredChange& change) const;
   [[nodiscard]] std::unordered_set<std::size_t> visible_surface(const Box& box, const Point2& robot) const;
+  [[nodiscard]] std::array<bool, 4> faces_that_show(const Box& box,
+                                                    const std::unordered_set<std::size_t>& visible_surface) const;
 
   GridGeometry geometry_;
   SurfaceOptics optics_;

@@ -34,6 +34,8 @@ class Witness {
   void end_look(double seconds, int face_beams);
 
   [[nodiscard]] double longest_seen_s() const;
+  /// Of each face, as faces(box) has them.
+  [[nodiscard]] const std::array<double, 4>& faces_seen_s() const { return seen_s_; }
   /// Cells touched, by index in the map.
   [[nodiscard]] const std::unordered_set<std::size_t>& touched() const { return touched_; }
 

@@ -11,6 +11,14 @@ namespace {
 using mapping::things::Outline;
 using mapping::things::Thing;
 
+TEST(ThingScore, WhatWasSeenAllAroundIsPartOfWhatWasSeen) {
+  std::array<TrueChange, 3> changes;
+  changes[0].is_seen = true;
+  changes[1].is_seen = changes[1].is_seen_all_around = true;
+  EXPECT_EQ(score_of({}, changes).changes, 2u);
+  EXPECT_EQ(score_of({}, only_seen_all_around(changes)).changes, 1u);
+}
+
 TEST(ThingScore, AnAssumedSideIsRightWhereASideOfABoxLies) {
   Thing thing;
   thing.at = Outline{{5.0, 5.0}, 2.4, 1.6, 0.0, {false, false, true, true}, {true, true, false, false}};

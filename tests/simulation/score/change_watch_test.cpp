@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 namespace deltamap::simulation::score {
 namespace {
 
@@ -66,6 +69,29 @@ TEST_F(ChangeWatchRoom, WhatCameAndWentUnseenIsNotToldApart) {
   add(50, 2.0);
   remove(50, 3.0);
   EXPECT_FALSE(watch.watched()[2].is_told_apart) << "the place is as empty as it was";
+}
+
+TEST_F(ChangeWatchRoom, ASeenFaceIsNotAllAround) {
+  remove(first, 1.0);
+  for (int i = 0; i < 20; ++i) look(kFacing);
+  EXPECT_GE(watch.watched()[0].witness.longest_seen_s(), 3.0);
+  EXPECT_EQ(watch.watched()[0].faces_that_show, (std::array{true, true, true, true}));
+  EXPECT_TRUE(watch.watched()[0].is_seen_all_around(3.0)) << "where it has gone one looks through all of it";
+  add(50, 10.0);
+  for (int i = 0; i < 20; ++i) look(kFacing);
+  EXPECT_GE(watch.watched()[1].witness.longest_seen_s(), 3.0);
+  EXPECT_FALSE(watch.watched()[1].is_seen_all_around(3.0)) << "its back was not seen";
+  for (const Pose2& pose : {Pose2{10.0, 5.0, 3.14}, Pose2{2.0, 5.0, 0.0}, Pose2{6.0, 9.0, -1.57}}) {
+    for (int i = 0; i < 20; ++i) look(pose);
+  }
+  EXPECT_TRUE(watch.watched()[1].is_seen_all_around(3.0));
+}
+
+TEST_F(ChangeWatchRoom, AFaceThatNobodyCouldSeeIsNotAskedFor) {
+  const Box at_wall{{6.0, 9.0}, 2.0, 2.0, 0.0};
+  watch.apply({ChangeKind::kAdded, 52, at_wall, std::nullopt}, after(1.0), kRobot);
+  const auto& shows = watch.watched()[0].faces_that_show;
+  EXPECT_EQ(std::count(shows.begin(), shows.end(), true), 3) << "its back stands against the wall";
 }
 
 }  // namespace
