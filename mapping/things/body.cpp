@@ -23,6 +23,7 @@ constexpr double kLineGap_m = 0.5;      // between two pieces of one face
 constexpr double kShownShare = 0.5;     // of the sum of two sides of a rectangle, by two of its faces
 
 constexpr int kShownCells = 2;        // that stood when another had gone: more than a stray one
+constexpr double kFaceTimes = 2.0;    // as long as a body a face must be: a shorter one is a leg, or an end of wrap
 constexpr int kFreeInside = 4;        // cells that were found free: more than stray ones
 constexpr int kLooksThrough = 2;      // scans: more than one at a pose that was a little off
 constexpr double kClosedShare = 0.6;  // of the rectangle: its own cells, with those that it closes off
@@ -31,12 +32,34 @@ int sides_seen(const Outline& outline) {
   return static_cast<int>(std::count(outline.seen.begin(), outline.seen.end(), true));
 }
 
+/// The surface of another side goes on beyond one end of a side that was not seen: more of the body is still to go.
+/// Beyond both ends there is a neighbour.
+bool goes_on_beyond(const Body& gone, const Outline& outline, const OccupancyGrid& map) {
+  const auto corner = corners(outline);
+  const auto is_face = [&](const Point2& place) {
+    const Cell cell = map.geometry().cell_at(place);
+    return map.at(cell) == CellState::kOccupied && !gone.shown.before(cell);
+  };
+  for (std::size_t side = 0; side < corner.size(); ++side) {
+    if (outline.seen[side]) continue;
+    const Point2 along = map.resolution_m() * (corner[(side + 1) % 4] - corner[side]).normalized();
+    const Point2 outward{along.y(), -along.x()};
+    const auto goes_on = [&](const Point2& end, const Point2& inward) {
+      return is_face(end + outward) || is_face(end + outward + inward);
+    };
+    if (goes_on(corner[side], along) != goes_on(corner[(side + 1) % 4], -along)) return true;
+  }
+  return false;
+}
+
 /// Of that outline: three sides are seen, or its inside is closed off.
-bool is_whole(const Body& body, const Outline& outline, Side side, double resolution_m) {
+bool is_whole(const Body& body, const Outline& outline, Side side, const OccupancyGrid& map) {
   if (outline.width_m < kOneFace_m) return false;
-  const double cells = outline.length_m * outline.width_m / (resolution_m * resolution_m);
+  const double cells = outline.length_m * outline.width_m / (map.resolution_m() * map.resolution_m());
   const bool is_closed = side == Side::kCome && static_cast<double>(body.come.count()) > kClosedShare * cells;
-  return is_closed || sides_seen(outline) >= kWholeSides;
+  if (is_closed) return true;
+  if (sides_seen(outline) < kWholeSides) return false;
+  return side == Side::kCome || !goes_on_beyond(body, outline, map);
 }
 
 BodyCells cells_of(const Body& body, Side side, const OccupancyGrid& map) {
@@ -138,6 +161,8 @@ void judge_gone(Body& body, const ChangedMap& step) {
   body.most_gone = std::max(body.most_gone, body.gone.count());
   const bool is_left = static_cast<double>(body.gone.count()) >= kLeftShare * static_cast<double>(body.most_gone);
   if (is_left && static_cast<double>(faces) >= kLeftShare * static_cast<double>(most) && faces > 0) {
+    const bool is_whole = static_cast<double>(body.gone.count()) >= kWholeShare * static_cast<double>(body.most_gone);
+    if (!is_whole && !body.has_grown && body.thing.from) return;  // another has taken some of its floor
     body.freed = outline_of_gone(cells, step.map);
     body.thing.from = up_to_neighbours(*body.freed, step.map);
     if (!body.thing.at) body.thing.kind = ThingKind::kGone;
@@ -156,9 +181,9 @@ bool differ(const std::optional<Outline>& a, const std::optional<Outline>& b, do
 
 }  // namespace
 
-bool is_whole(const Body& body, Side side, double resolution_m) {
+bool is_whole(const Body& body, Side side, const OccupancyGrid& map) {
   const auto& outline = body.outline(side);
-  return outline && is_whole(body, *outline, side, resolution_m);
+  return outline && is_whole(body, *outline, side, map);
 }
 
 bool is_beyond_shown(const Body& gone, std::span<const Point2> places, const GridGeometry& geometry) {
@@ -178,13 +203,12 @@ bool is_beyond_shown(const Body& gone, std::span<const Point2> places, const Gri
   return shown >= kShownCells || 2 * beyond > places.size();
 }
 
-bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& map, double quiet_s) {
+bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& map, double one_look_s) {
   const auto& one = a.outline(side);
   const auto& other = b.outline(side);
   if (!one || !other || (one->centre - other->centre).norm() > kFarthestPart_m) return false;
   const bool is_inside_other = is_inside(*one, other->centre, kInside_m) || is_inside(*other, one->centre, kInside_m);
-  if ((is_whole(a, side, map.resolution_m()) || is_whole(b, side, map.resolution_m())) && !is_inside_other)
-    return false;
+  if ((is_whole(a, side, map) || is_whole(b, side, map)) && !is_inside_other) return false;
   BodyCells both = cells_of(a, side, map);
   const BodyCells more = cells_of(b, side, map);
   if (both.faces.empty() && more.faces.empty()) return false;  // they are no longer followed
@@ -197,7 +221,7 @@ bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& ma
   const Outline all = side == Side::kCome ? outline_of_come(both) : outline_of_gone(both, map);
   if (share_on_sides(both, all) < kOnSidesShare) return false;
   if (all.width_m < kOneFace_m) {
-    const bool in_one_look = std::abs(seconds(a.grown - b.grown)) <= quiet_s;
+    const bool in_one_look = std::abs(seconds(a.grown - b.grown)) <= one_look_s;
     return in_one_look && all.length_m <= one->length_m + other->length_m + kLineGap_m;
   }
   return is_inside_other || one->length_m + other->length_m >= kShownShare * (all.length_m + all.width_m);
@@ -247,7 +271,9 @@ bool is_taken(const Body& gone) {
 
 bool is_tellable(const Body& body, const ThingsParams& params) {
   const auto is_enough = [&](const std::optional<Outline>& outline, std::size_t faces) {
-    return outline && outline->length_m >= params.least_size_m && faces >= static_cast<std::size_t>(params.least_cells);
+    if (!outline || faces < static_cast<std::size_t>(params.least_cells)) return false;
+    const double least_m = outline->width_m < kOneFace_m ? kFaceTimes * params.least_size_m : params.least_size_m;
+    return outline->length_m >= least_m;
   };
   return is_enough(body.thing.at, body.most_faces_come) || is_enough(body.thing.from, body.most_faces_gone);
 }

@@ -20,8 +20,7 @@ struct ThingsParams {
   double gap_m = 0.15;                      ///< that is bridged between cells of one body, >= 0
   double told_step_m = 0.1;                 ///< change of place or size that is told as an update, > 0
   double same_size_m = 0.25;                ///< sides that differ by less are the same, > 0
-  double one_look_s = 60.0;                 ///< what comes and goes within it was seen in one look, > 0
-  double quiet_s = 180.0;                   ///< a face that has not grown for so long is whole, > 0
+  double one_look_s = 60.0;                 ///< what comes, goes and grows within it is seen in one look, > 0
   double tentative_s = 600.0;               ///< cells too few to be told are forgotten after that, > 0
   std::size_t most_cell_bytes = 1'000'000;  ///< of followed bodies; the longest quiet are followed no more
   bool assumes_sides = true;                ///< that nobody has seen, where those seen fix the rectangle
@@ -83,14 +82,14 @@ void contradict_by(const ChangedMap& step, Body& body);
 
 /// Whether the surfaces of both are sides of one rectangle that is no larger than what they show of it: the front and a
 /// side of one body, that were seen one after the other. Bodies beside each other are not.
-[[nodiscard]] bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& map, double quiet_s);
+[[nodiscard]] bool are_of_one(const Body& a, const Body& b, Side side, const OccupancyGrid& map, double one_look_s);
 
 /// From the middle of what has gone the way to most of the places leads through what its going has shown, or they are
 /// that: it ended before.
 [[nodiscard]] bool is_beyond_shown(const Body& gone, std::span<const Point2> places, const GridGeometry& geometry);
 
 /// All of its outline is certain: what lies beyond belongs to another body.
-[[nodiscard]] bool is_whole(const Body& body, Side side, double resolution_m);
+[[nodiscard]] bool is_whole(const Body& body, Side side, const OccupancyGrid& map);
 
 /// Floor that it has left, and that was seen free, is covered by now: what stands there came later.
 [[nodiscard]] bool is_taken(const Body& gone);

@@ -13,6 +13,7 @@ constexpr double kCoarse_rad = 3.0 * std::numbers::pi / 180.0;
 constexpr double kFine_rad = 0.5 * std::numbers::pi / 180.0;
 constexpr double kOnSide_cells = 1.5;  // a cell so near to a side lies on it
 constexpr double kWholeSideShare = 0.8;
+constexpr double kBeside_cells = 2.0;         // of a surface; floor that reaches no farther beyond it tells nothing
 constexpr int kHiddenGap_cells = 2;           // between a body and a neighbour that hid its side
 constexpr double kSeenShare = 0.5;            // of a side's length
 constexpr std::size_t kMostForHeading = 256;  // cells; more are thinned out
@@ -138,13 +139,14 @@ bool is_mostly(const Outline& outline, int side, double beyond_m, double step_m,
   return seen >= kSeenShare * all;
 }
 
-/// Where a face ends that floor has become free behind: the middle one of what its columns reach, away from the face.
-double depth_behind(const std::vector<Point2>& inside, const Extent& face, double resolution_m, double sign) {
-  const auto columns = static_cast<std::size_t>(std::lround(face.along_u() / resolution_m)) + 1;
+/// How far floor has become free beyond the surface towards +v (sign 1) or -v: the middle one of what its columns
+/// reach.
+double depth_beyond(const std::vector<Point2>& inside, const Extent& faces, double resolution_m, double sign) {
+  const auto columns = static_cast<std::size_t>(std::lround(faces.along_u() / resolution_m)) + 1;
   std::vector<double> reach(columns, 0.0);
-  const double from_v = sign > 0 ? face.high_v : face.low_v;
+  const double from_v = sign > 0 ? faces.high_v : faces.low_v;
   for (const Point2& own : inside) {
-    const double column = std::floor((own.x() - face.low_u) / resolution_m + 0.5);
+    const double column = std::floor((own.x() - faces.low_u) / resolution_m + 0.5);
     if (column < 0 || column >= static_cast<double>(columns)) continue;
     double& deepest = reach[static_cast<std::size_t>(column)];
     deepest = std::max(deepest, sign * (own.y() - from_v));
@@ -153,6 +155,20 @@ double depth_behind(const std::vector<Point2>& inside, const Extent& face, doubl
   std::nth_element(reach.begin(), middle, reach.end());
   return *middle;
 }
+
+/// With the floor beyond it, where that is more than a surface drawn a cell beside.
+Extent with_floor(Extent faces, const std::vector<Point2>& inside, double resolution_m) {
+  const double ahead_m = depth_beyond(inside, faces, resolution_m, 1.0);
+  const double behind_m = depth_beyond(inside, faces, resolution_m, -1.0);
+  const bool is_face = faces.along_v() < kOneFace_m;  // what lies before it was free
+  if (ahead_m > kBeside_cells * resolution_m && (!is_face || ahead_m > behind_m))
+    faces.high_v += ahead_m + resolution_m;
+  if (behind_m > kBeside_cells * resolution_m && (!is_face || behind_m >= ahead_m))
+    faces.low_v -= behind_m + resolution_m;
+  return faces;
+}
+
+Extent crosswise(const Extent& extent) { return {extent.low_v, extent.high_v, extent.low_u, extent.high_u}; }
 
 /// A surface lies along all of a side, so far beyond it.
 bool is_surface_beyond(const Outline& outline, int side, double beyond_m, const OccupancyGrid& map) {
@@ -200,14 +216,9 @@ Outline outline_of_gone(const BodyCells& cells, const OccupancyGrid& map) {
     extent = extent_of(turned(cells.faces, own_rad));
     inside = turned(cells.inside, own_rad);
   }
-  if (extent.along_v() < kOneFace_m) {
-    const double ahead_m = depth_behind(inside, extent, cells.resolution_m, 1.0);
-    const double behind_m = depth_behind(inside, extent, cells.resolution_m, -1.0);
-    if (std::max(ahead_m, behind_m) > 0.0) {
-      if (ahead_m > behind_m) extent.high_v += ahead_m + cells.resolution_m;
-      if (behind_m >= ahead_m) extent.low_v -= behind_m + cells.resolution_m;
-    }
-  }
+  extent = with_floor(extent, inside, cells.resolution_m);
+  for (Point2& own : inside) std::swap(own.x(), own.y());
+  extent = crosswise(with_floor(crosswise(extent), inside, cells.resolution_m));
   Outline outline = outline_around(extent, own_rad, cells.resolution_m);
   const auto is_known = [&](const Point2& place) {
     return map.at(map.geometry().cell_at(place)) != CellState::kUnknown;

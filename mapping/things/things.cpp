@@ -152,8 +152,8 @@ std::size_t Things::cells_it_grows_by(const Body& body, const Step& step, const 
   const GridGeometry& geometry = step.now.map.geometry();
   if (side == Side::kGone && is_beyond_shown(body, places_of(cluster, geometry), geometry)) return 0;
   const auto& outline = body.outline(side);
-  const bool grows_no_more = outline && (is_whole(body, side, step.now.map.resolution_m()) ||
-                                         seconds(step.now.time - body.grown) > params_.quiet_s);
+  const bool grows_no_more =
+      outline && (is_whole(body, side, step.now.map) || seconds(step.now.time - body.grown) > params_.one_look_s);
   return grows_no_more && is_beyond(cluster, *outline, step.now.map.geometry()) ? 0 : touching;
 }
 

@@ -93,8 +93,8 @@ std::optional<Pushed> shifted_to(const Body& came, const Body& gone, const Occup
   gone.gone.visit([&](Cell cell, CellState) {
     if (map.at(cell) == CellState::kFree) freed.push_back(map.geometry().centre_of(cell));
   });
-  return shifted_body({*came.thing.at, is_whole(came, Side::kCome, map.resolution_m())},
-                      {*gone.thing.from, is_whole(gone, Side::kGone, map.resolution_m())}, freed, map);
+  return shifted_body({*came.thing.at, is_whole(came, Side::kCome, map)},
+                      {*gone.thing.from, is_whole(gone, Side::kGone, map)}, freed, map);
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ void Things::join_faces(const ChangedMap& now) {
       const double apart_s = std::abs(seconds(other.thing.first_seen - grown.thing.first_seen));
       if (grown.told && other.told && apart_s > params_.one_look_s) return false;
       const auto side = common_side(grown.thing, other.thing);
-      return side && are_of_one(grown, other, *side, now.map, params_.quiet_s);
+      return side && are_of_one(grown, other, *side, now.map, params_.one_look_s);
     };
     const auto other = std::find_if(bodies_.begin(), bodies_.end(), is_other_face);
     if (other == bodies_.end()) continue;

@@ -50,5 +50,18 @@ TEST(Body, KeepsItsOutlineWhileALittleOfItIsMissingAndGoesWithTheMost) {
   EXPECT_NEAR(body.thing.from->length_m, 39 * kSide_m, 1e-9) << "as it stood";
 }
 
+TEST(Body, IsToldByASingleFaceThatIsTwiceAsLongAsItMustBe) {
+  const ThingsParams params;
+  Body body;
+  body.most_faces_come = 20;
+  const auto is_told = [&](double length_m, double width_m) {
+    body.thing.at = Outline{{0.0, 0.0}, length_m, width_m, 0.0, {}, {}};
+    return is_tellable(body, params);
+  };
+  EXPECT_FALSE(is_told(1.9 * params.least_size_m, 0.1)) << "a leg";
+  EXPECT_TRUE(is_told(2.1 * params.least_size_m, 0.1));
+  EXPECT_TRUE(is_told(1.1 * params.least_size_m, kOneFace_m)) << "a body";
+}
+
 }  // namespace
 }  // namespace deltamap::mapping::things

@@ -51,6 +51,19 @@ TEST(OutlineFit, OfASingleFaceOneSideIsSeen) {
   EXPECT_EQ(outline.seen, (std::array<bool, 4>{false, true, false, false}));
 }
 
+TEST(OutlineFit, FloorBeyondTwoFacesTellsHowFarWhatHasGoneReached) {
+  const OccupancyGrid map{{120, 120, kCell_m, {0.0, 0.0}}, CellState::kFree};
+  BodyCells cells{{}, {}, kCell_m};
+  for (int column = 20; column <= 67; ++column) cells.faces.push_back(map.geometry().centre_of({column, 20}));
+  for (int row = 21; row <= 31; ++row) cells.faces.push_back(map.geometry().centre_of({20, row}));  // a third of a side
+  for (int row = 21; row <= 51; ++row) {
+    for (int column = 21; column <= 67; ++column) cells.inside.push_back(map.geometry().centre_of({column, row}));
+  }
+  const Outline outline = outline_of_gone(cells, map);
+  EXPECT_NEAR(outline.length_m, 2.4, 0.1);
+  EXPECT_NEAR(outline.width_m, 1.6, 0.1);
+}
+
 TEST(OutlineFit, WhatHasGoneReachedUpToTheNeighbourThatHidItsSide) {
   OccupancyGrid map{{120, 120, kCell_m, {0.0, 0.0}}, CellState::kFree};
   for (int row = 40; row <= 60; ++row) map.set({39, row}, CellState::kOccupied);  // a neighbour in the west

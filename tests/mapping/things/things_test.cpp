@@ -55,6 +55,16 @@ TEST(Things, AThingThatStoodThereFromTheBeginningGoes) {
   expect_outline(*told[0].thing.from, kBox);
 }
 
+TEST(Things, WhatHasGoneKeepsItsOutlineWhileAnotherTakesSomeOfItsFloor) {
+  DrawnSite site;
+  site.box(kBox).fill({4.05, 4.05, 6.35, 5.55}, CellState::kUnknown).begin_with_what_is_drawn();
+  site.clear(kBox).revision(10.0);
+  const Drawn narrow{5.7, 4.0, 6.4, 5.6};
+  site.fill(narrow, CellState::kUnknown).box(narrow).revision(1000.0);
+  ASSERT_EQ(site.things.all().size(), 2u);
+  expect_outline(*site.things.all()[0].from, kBox);
+}
+
 TEST(Things, OfABodyWhoseFrontAloneWasKnownTheFloorBehindTellsTheDepth) {
   DrawnSite site;
   const Drawn slot{4.0, 0.0, 6.4, 2.0};
@@ -91,6 +101,16 @@ TEST_F(Row, ANeighbourWhoseSideWasShownGoesAsAnother) {
   expect_outline(*site.things.all()[0].from, kLeft);
 }
 
+TEST_F(Row, ABodyThatIsSeenToGoPieceByPieceIsOne) {
+  site.clear({3.6, 0.05, 4.35, 2.4}).east(kLeft);
+  ASSERT_EQ(site.revision(10.0).size(), 1u);
+  for (const ThingEvent& event : site.clear({2.8, 0.05, 3.55, 2.4}).revision(15.0)) EXPECT_FALSE(event.is_new);
+  for (const ThingEvent& event : site.clear({2.05, 0.05, 2.75, 2.4}).west(kLeft).revision(20.0))
+    EXPECT_FALSE(event.is_new);
+  ASSERT_EQ(site.things.all().size(), 1u);
+  expect_outline(*site.things.all()[0].from, kLeft);
+}
+
 TEST_F(Row, ANeighbourBehindASideThatWasShownInPartGoesAsAnother) {
   site.clear({2.05, 1.2, 4.35, 2.4}).fill({4.4, 1.2, 4.4, 2.35}, CellState::kOccupied);  // half as deep as it was
   ASSERT_EQ(site.revision(10.0).size(), 1u);
@@ -119,6 +139,15 @@ TEST(Things, FloorThatIsClosedOffAtOnceBelongsToTheFaceThatItLiesBehind) {
   ASSERT_EQ(site.things.all().size(), 2u);
   EXPECT_NEAR(site.things.all()[0].at->centre.x(), 3.1, 0.3);
   EXPECT_NEAR(site.things.all()[1].at->centre.x(), 5.7, 0.3);
+}
+
+TEST(Things, AFaceThatGoesOnAfterMoreThanOneLookIsAnothers) {
+  DrawnSite site;
+  site.fill({2.0, 3.0, 4.2, 3.0}, CellState::kOccupied).revision(10.0);
+  site.fill({4.25, 3.0, 5.0, 3.0}, CellState::kOccupied).revision(50.0);
+  EXPECT_EQ(site.things.all().size(), 1u);
+  site.fill({5.05, 3.0, 7.0, 3.0}, CellState::kOccupied).revision(150.0);
+  EXPECT_EQ(site.things.all().size(), 2u);
 }
 
 TEST(Things, WhatAppearedGoesUnderTheSameId) {
