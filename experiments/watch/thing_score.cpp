@@ -99,7 +99,7 @@ std::vector<Told> told_at_last(std::span<const ThingEvent> events, double one_lo
   std::map<std::uint32_t, std::vector<Told>> of_thing;
   for (const ThingEvent& event : events) {
     std::vector<Told>& told = of_thing[event.thing.id];
-    const bool goes_on = !told.empty() && told.back().thing.kind == event.thing.kind;
+    const bool goes_on = !told.empty() && told.back().thing.kind == event.thing.kind && !event.is_new;
     if (goes_on) {
       told.back().thing = event.thing;
       continue;

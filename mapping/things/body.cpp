@@ -7,6 +7,7 @@
 #include "core/grid/grid_ray.hpp"
 #include "mapping/things/assumed.hpp"
 #include "mapping/things/outline_fit.hpp"
+#include "mapping/things/pushed.hpp"
 
 namespace deltamap::mapping::things {
 namespace {
@@ -78,6 +79,12 @@ BodyCells cells_of(const Body& body, Side side, const OccupancyGrid& map) {
   return cells;
 }
 
+std::size_t faces_on(const BodyCells& cells, const Outline& outline) {
+  return static_cast<std::size_t>(std::count_if(cells.faces.begin(), cells.faces.end(), [&](const Point2& face) {
+    return is_inside(outline, face, cells.resolution_m);
+  }));
+}
+
 bool is_same_size(const Outline& a, const Outline& b, double tolerance_m) {
   return std::abs(a.length_m - b.length_m) <= tolerance_m && std::abs(a.width_m - b.width_m) <= tolerance_m;
 }
@@ -122,14 +129,14 @@ void leave(Body& body, const ChangedMap& step) {
   thing.from = thing.at;
   thing.at.reset();
   body.freed.reset();
-  body.is_pushed = false;
+  body.is_pushed = body.is_pushed_back = false;
   forget_gone(body);
   body.began = body.grown = step.time;
 }
 
 void judge_standing(Body& body, const ChangedMap& step, const ThingsParams& params) {
   const BodyCells cells = cells_of(body, Side::kCome, step.map);
-  const std::size_t faces = cells.faces.size();
+  const std::size_t faces = body.is_pushed_back && body.thing.at ? faces_on(cells, *body.thing.at) : cells.faces.size();
   const std::size_t most = std::max(body.most_faces_come, faces);
   body.most_faces_come = most;
   if (static_cast<double>(faces) < kLeftShare * static_cast<double>(most)) {
@@ -235,7 +242,7 @@ void own(Body& body, std::span<const CellChange> cells, Side side) {
 }
 
 void judge(Body& body, const ChangedMap& step, const ThingsParams& params) {
-  if (step.takes_back) body.is_pushed = false;
+  if (step.takes_back) body.is_pushed = body.is_pushed_back = false;
   if (!body.come.empty() || body.thing.at) judge_standing(body, step, params);
   if (body.most_faces_gone > 0 || !body.gone.empty()) judge_gone(body, step);
   body.thing.last_seen = step.time;
@@ -245,6 +252,19 @@ void judge(Body& body, const ChangedMap& step, const ThingsParams& params) {
   if (body.thing.revisions.empty() || body.thing.revisions.back() != step.number)
     body.thing.revisions.push_back(step.number);
   if (body.thing.revisions.size() > Thing::kMostRevisions) body.thing.revisions.erase(body.thing.revisions.begin());
+}
+
+void push_back_by(const ChangedMap& step, Body& body, double one_look_s) {
+  Thing& thing = body.thing;
+  const bool has_just_left = body.told && thing.kind == ThingKind::kGone && body.most_faces_come > 0 && thing.from &&
+                             !thing.at && seconds(step.time - body.grown) <= one_look_s;
+  if (!has_just_left || step.takes_back) return;
+  thing.at = pushed_back(*thing.from, step.map);
+  if (!thing.at) return;
+  thing.kind = ThingKind::kMoved;
+  body.most_faces_come = faces_on(cells_of(body, Side::kCome, step.map), *thing.at);
+  body.is_pushed = body.is_pushed_back = true;
+  body.is_touched = true;
 }
 
 void contradict(Body& body) {
@@ -278,8 +298,15 @@ bool is_tellable(const Body& body, const ThingsParams& params) {
   return is_enough(body.thing.at, body.most_faces_come) || is_enough(body.thing.from, body.most_faces_gone);
 }
 
+bool has_news(const Body& body) {
+  if (!body.told || body.told->kind != body.thing.kind) return true;
+  const Thing& told = *body.told;
+  return body.thing.kind == ThingKind::kMoved && differ(told.from, body.thing.from, kLeastShift_m) &&
+         !differ(told.at, body.thing.from, kLeastShift_m);
+}
+
 bool differs_from_told(const Body& body, double told_step_m) {
-  return !body.told || body.told->kind != body.thing.kind || differ(body.told->at, body.thing.at, told_step_m) ||
+  return has_news(body) || differ(body.told->at, body.thing.at, told_step_m) ||
          differ(body.told->from, body.thing.from, told_step_m);
 }
 

@@ -58,6 +58,7 @@ struct Body {
   int looks_through = 0;           ///< scans with beams through what is assumed of it
   std::optional<Outline> freed{};  ///< the floor that what has gone has left; its outline may reach up to neighbours
   bool is_pushed = false;  ///< its outlines are those of a body that was pushed: what it has of cells are two strips
+  bool is_pushed_back = false;   ///< and its front is none that it has come with
   bool is_contradicted = false;  ///< by them, or by a revision: nothing is assumed of it where it stands
 
   [[nodiscard]] ThingCells& cells(Side side) { return side == Side::kCome ? come : gone; }
@@ -74,6 +75,10 @@ void own(Body& body, std::span<const CellChange> cells, Side side);
 
 /// What the map now says of its outline, of what is assumed of that, and of its kind.
 void judge(Body& body, const ChangedMap& step, const ThingsParams& params);
+
+/// What has just left its place, and proves to stand deeper by less than its depth, was pushed back: its new front
+/// shows how far.
+void push_back_by(const ChangedMap& step, Body& body, double one_look_s);
 
 /// Where the revision finds cells free inside what is assumed of it, nothing is assumed of it any more while it stands.
 void contradict_by(const ChangedMap& step, Body& body);
@@ -96,6 +101,9 @@ void contradict_by(const ChangedMap& step, Body& body);
 
 /// Whether it has enough of a surface to be told.
 [[nodiscard]] bool is_tellable(const Body& body, const ThingsParams& params);
+
+/// It was not told yet, is of another kind than was told, or was moved on from where it was told to stand.
+[[nodiscard]] bool has_news(const Body& body);
 
 /// What would be told differs from what was by more than the step.
 [[nodiscard]] bool differs_from_told(const Body& body, double told_step_m);

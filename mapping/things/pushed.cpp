@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/grid/near_occupied.hpp"
 #include "mapping/things/span.hpp"
 
 namespace deltamap::mapping::things {
@@ -16,6 +17,10 @@ constexpr double kSameDepth_m = 0.2;   // of both strips
 constexpr double kSeenOfIt = 0.5;      // of the longer strip, by the shorter one
 constexpr double kBeside_m = 0.25;     // that the shorter one may reach beyond the longer
 constexpr double kFloorBetween = 0.3;  // share of free cells from which on there is floor between
+constexpr double kLeastPush_m = 0.15;  // less is a correction of its place
+constexpr int kFrontReach = 1;         // cells
+constexpr double kFrontShare = 0.7;    // of its width, by the surface that is its front now
+constexpr double kFloorBefore = 0.7;   // share of free cells before that
 constexpr int kBetween = 12;           // samples along and across
 
 /// Two strips across the way of the push, in common axes.
@@ -60,7 +65,7 @@ Span across_longer(const Strips& strips, double from, double to) {
   return span;
 }
 
-bool is_floor(const Span& span, const Pose2& map_from_axes, const OccupancyGrid& map) {
+double free_share(const Span& span, const Pose2& map_from_axes, const OccupancyGrid& map) {
   int free = 0;
   for (int i = 1; i < kBetween; ++i) {
     for (int j = 1; j < kBetween; ++j) {
@@ -68,7 +73,48 @@ bool is_floor(const Span& span, const Pose2& map_from_axes, const OccupancyGrid&
       free += map.at(map.geometry().cell_at(map_from_axes * own)) == CellState::kFree ? 1 : 0;
     }
   }
-  return free >= kFloorBetween * (kBetween - 1) * (kBetween - 1);
+  return free / static_cast<double>((kBetween - 1) * (kBetween - 1));
+}
+
+/// A surface lies across all of the way, so far along it.
+bool is_front(const Span& body, std::size_t way, double at, const Pose2& map_from_axes, const OccupancyGrid& map) {
+  const std::size_t across = 1 - way;
+  const int steps = std::max(1, static_cast<int>(body.extent(across) / map.resolution_m()));
+  int covered = 0;
+  for (int i = 0; i < steps; ++i) {
+    Point2 own;
+    own[static_cast<int>(way)] = at;
+    own[static_cast<int>(across)] = body.low[across] + (i + 0.5) / steps * body.extent(across);
+    covered += has_occupied_within(map, map.geometry().cell_at(map_from_axes * own), kFrontReach) ? 1 : 0;
+  }
+  return covered >= kFrontShare * steps;
+}
+
+/// So far from that end of the way its front lies now.
+std::optional<double> back_from_end(const Span& body, std::size_t way, double sign, const Pose2& axes,
+                                    const OccupancyGrid& map) {
+  const double end = sign > 0.0 ? body.high[way] : body.low[way];
+  const double most_m = std::min(kMostPush_m, body.extent(way) - kLeastDepth_m);
+  const auto between = [&](double from_m, double to_m) {
+    Span span = body;
+    span.low[way] = std::min(end - sign * from_m, end - sign * to_m);
+    span.high[way] = std::max(end - sign * from_m, end - sign * to_m);
+    return span;
+  };
+  const double cell_m = map.resolution_m();
+  int first = 0;  // of the places, a cell apart, where a surface lies across
+  int last = 0;
+  for (int cells = 1; cells * cell_m <= most_m; ++cells) {
+    const bool is_it = is_front(body, way, end - sign * cells * cell_m, axes, map);
+    if (!is_it && first > 0) break;
+    if (is_it && first == 0) first = cells;
+    if (is_it) last = cells;
+  }
+  const double back_m = 0.5 * (first + last) * cell_m;
+  if (back_m < kLeastPush_m || free_share(between(0.0, back_m - cell_m), axes, map) < kFloorBefore ||
+      free_share(between(back_m + cell_m, body.extent(way)), axes, map) >= kFloorBetween)
+    return std::nullopt;
+  return back_m;
 }
 
 /// The side that faces along the way, or against it.
@@ -83,7 +129,8 @@ std::optional<Pushed> pushed_along(const Strips& strips, const Pose2& axes, cons
   const double onward = strips.onward();
   const auto front = [&](const Span& span) { return onward > 0.0 ? span.high[strips.way] : span.low[strips.way]; };
   const auto back = [&](const Span& span) { return onward > 0.0 ? span.low[strips.way] : span.high[strips.way]; };
-  if (is_floor(across_longer(strips, front(strips.gone), back(strips.came)), axes, map)) return std::nullopt;
+  if (free_share(across_longer(strips, front(strips.gone), back(strips.came)), axes, map) >= kFloorBetween)
+    return std::nullopt;
   return Pushed{
       outline_of(across_longer(strips, back(strips.gone), back(strips.came)), axes, side_towards(strips.way, -onward)),
       outline_of(across_longer(strips, front(strips.gone), front(strips.came)), axes,
@@ -91,6 +138,22 @@ std::optional<Pushed> pushed_along(const Strips& strips, const Pose2& axes, cons
 }
 
 }  // namespace
+
+std::optional<Outline> pushed_back(const Outline& stood, const OccupancyGrid& map) {
+  const Pose2 axes = map_from_axes(stood);
+  const Span body = span_of(stood, axes);
+  for (const std::size_t way : {0U, 1U}) {
+    for (const double sign : {1.0, -1.0}) {
+      const auto back_m = back_from_end(body, way, sign, axes, map);
+      if (!back_m) continue;
+      Span now = body;
+      now.low[way] -= sign * *back_m;
+      now.high[way] -= sign * *back_m;
+      return outline_of(now, axes, side_towards(way, sign));
+    }
+  }
+  return std::nullopt;
+}
 
 std::optional<Pushed> pushed_body(const Outline& came, const Outline& gone, const OccupancyGrid& map) {
   const bool may_be = (came.centre - gone.centre).norm() <= kMostDepth_m + kMostPush_m && are_parallel(came, gone);

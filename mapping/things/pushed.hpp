@@ -19,4 +19,8 @@ struct Pushed {
 /// as far as it was seen, and no floor between them. Nothing: they are no two sides of one body.
 [[nodiscard]] std::optional<Pushed> pushed_body(const Outline& came, const Outline& gone, const OccupancyGrid& map);
 
+/// Where it stands now, of a body as it stood whose front has gone: behind it, by less than a push, a surface lies
+/// across all of its width, the floor before that is free and what lies behind is not. Nothing: it is not there.
+[[nodiscard]] std::optional<Outline> pushed_back(const Outline& stood, const OccupancyGrid& map);
+
 }  // namespace deltamap::mapping::things

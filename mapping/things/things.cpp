@@ -146,7 +146,8 @@ void Things::add_surfaces(const Step& step, const Cells& changes, Side side) {
 
 /// It touches the cluster, and may still grow by it.
 std::size_t Things::cells_it_grows_by(const Body& body, const Step& step, const Cells& cluster, Side side) const {
-  if (side == Side::kCome && body.told && !body.thing.at) return 0;  // what is left of one that has gone
+  const bool has_left_them = body.told && (!body.thing.at || body.is_pushed_back);
+  if (side == Side::kCome && has_left_them) return 0;  // what is left of one that has gone
   const std::size_t touching = cells_touching(body.cells(side), cluster, step.gap_cells);
   if (touching == 0) return 0;
   const GridGeometry& geometry = step.now.map.geometry();
@@ -222,6 +223,7 @@ std::vector<ThingEvent> Things::told(const Step& step) {
   for (Body& body : bodies_) {
     contradict_by(step.now, body);
     if (body.is_touched) judge(body, step.now, params_);
+    push_back_by(step.now, body, params_.one_look_s);
   }
   join_faces(step.now);
   if (!step.now.takes_back) {  // else nothing new is said of the world
@@ -233,7 +235,7 @@ std::vector<ThingEvent> Things::told(const Step& step) {
   for (Body& body : bodies_) {
     if (!body.is_touched || (!body.told && (!is_tellable(body, params_) || only_flickers(body)))) continue;
     if (!differs_from_told(body, params_.told_step_m)) continue;
-    const bool is_new = !body.told || body.told->kind != body.thing.kind;
+    const bool is_new = has_news(body);
     if (body.thing.id == 0) body.thing.id = ++newest_id_;
     if (body.told) ++body.thing.updates;
     body.told = body.thing;

@@ -18,7 +18,7 @@ struct ThingEvent {
   Thing thing;
   std::uint32_t revision = 0;
   Timestamp time;
-  bool is_new = false;  ///< first told, or told to be of another kind than before; else an update
+  bool is_new = false;  ///< first told, told to be of another kind than before, or moved on; else an update
 };
 
 class Things {

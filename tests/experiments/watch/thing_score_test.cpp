@@ -32,5 +32,19 @@ TEST(ThingScore, AnAssumedSideIsRightWhereASideOfABoxLies) {
   EXPECT_EQ(assumed_score_of(things, {}).right, 0u);
 }
 
+TEST(ThingScore, AMoveOnIsAnotherEventThanTheMoveBefore) {
+  mapping::things::ThingEvent event;
+  event.thing.id = 1;
+  event.thing.kind = mapping::things::ThingKind::kMoved;
+  event.time = timestamp_from_ns(0);
+  event.is_new = true;
+  mapping::things::ThingEvent update = event;
+  update.is_new = false;
+  mapping::things::ThingEvent on = event;
+  on.time = event.time + duration_from_seconds(100.0);
+  EXPECT_EQ(told_at_last(std::array{event, update, on}, 60.0).size(), 2u);
+  EXPECT_EQ(told_at_last(std::array{event, update}, 60.0).size(), 1u);
+}
+
 }  // namespace
 }  // namespace deltamap::experiments

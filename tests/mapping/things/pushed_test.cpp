@@ -112,5 +112,59 @@ TEST_F(PushedBody, IsOneThingThatMoved) {
   EXPECT_NE(site.things.all()[0].kind, ThingKind::kMoved) << "the going was taken back";
 }
 
+// A body that closes off a bay of 2.4 m between two walls, and is pushed into it by 0.5 m.
+constexpr Drawn kInBay{4.0, 0.05, 6.4, 2.5};
+constexpr Drawn kDeeper{4.0, 0.05, 6.4, 2.0};
+
+class PushedBack : public testing::Test {
+ protected:
+  PushedBack() {
+    site.fill({3.95, 0.05, 3.95, 3.0}, CellState::kOccupied).fill({6.45, 0.05, 6.45, 3.0}, CellState::kOccupied);
+    site.begin_with_what_is_drawn();
+    site.fill(kInBay, CellState::kUnknown).north(kInBay).revision(10.0);
+  }
+  DrawnSite site;
+};
+
+TEST_F(PushedBack, ItsNewFrontTellsHowFar) {
+  ASSERT_EQ(site.things.all().size(), 1u);
+  const Outline stood = *site.things.all()[0].at;
+  EXPECT_FALSE(pushed_back(stood, site.map)) << "its front stands";
+  site.clear({4.0, 2.12, 6.4, 2.5});
+  EXPECT_FALSE(pushed_back(stood, site.next)) << "no front is seen";
+  const auto at = pushed_back(stood, site.north(kDeeper).next);
+  ASSERT_TRUE(at);
+  EXPECT_NEAR(at->centre.y(), stood.centre.y() - 0.5, kCells_m);
+  EXPECT_EQ(at->length_m, stood.length_m);
+  EXPECT_FALSE(pushed_back(stood, site.clear({4.0, 0.05, 6.4, 1.9}).next)) << "floor behind it: another's side";
+}
+
+TEST_F(PushedBack, IsOneThingThatMoved) {
+  site.clear({4.0, 2.12, 6.4, 2.5}).revision(100.0);
+  EXPECT_EQ(site.things.all()[0].kind, ThingKind::kGone) << "nobody knows yet";
+  const auto told = site.north(kDeeper).revision(110.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_TRUE(told[0].is_new);
+  EXPECT_EQ(told[0].thing.id, 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kMoved);
+  EXPECT_NEAR(told[0].thing.at->centre.y(), told[0].thing.from->centre.y() - 0.5, kCells_m);
+  site.clear({4.0, 0.05, 6.4, 2.0}).revision(500.0);
+  EXPECT_NE(site.things.all()[0].kind, ThingKind::kMoved) << "it has left the bay";
+}
+
+TEST_F(PushedBody, ThatIsPushedBackHasMovedOn) {
+  site.box(kOld).begin_with_what_is_drawn();
+  site.fill({4.0, 3.5, 6.4, 3.95}, CellState::kUnknown).south(kNew);
+  site.fill({4.0, 3.5, 4.0, 3.95}, CellState::kOccupied).fill({6.4, 3.5, 6.4, 3.95}, CellState::kOccupied);
+  site.revision(10.0);
+  ASSERT_EQ(site.clear({4.0, 5.55, 6.4, 6.0}).revision(300.0)[0].thing.kind, ThingKind::kMoved);
+  const auto told = site.clear({4.0, 3.5, 6.4, 3.95}).revision(500.0);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_TRUE(told[0].is_new) << "another move";
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kMoved);
+  expect_outline(*told[0].thing.from, kNew);
+  expect_outline(*told[0].thing.at, kOld);
+}
+
 }  // namespace
 }  // namespace deltamap::mapping::things
