@@ -101,16 +101,6 @@ TEST_F(Row, ANeighbourWhoseSideWasShownGoesAsAnother) {
   expect_outline(*site.things.all()[0].from, kLeft);
 }
 
-TEST_F(Row, ABodyThatIsSeenToGoPieceByPieceIsOne) {
-  site.clear({3.6, 0.05, 4.35, 2.4}).east(kLeft);
-  ASSERT_EQ(site.revision(10.0).size(), 1u);
-  for (const ThingEvent& event : site.clear({2.8, 0.05, 3.55, 2.4}).revision(15.0)) EXPECT_FALSE(event.is_new);
-  for (const ThingEvent& event : site.clear({2.05, 0.05, 2.75, 2.4}).west(kLeft).revision(20.0))
-    EXPECT_FALSE(event.is_new);
-  ASSERT_EQ(site.things.all().size(), 1u);
-  expect_outline(*site.things.all()[0].from, kLeft);
-}
-
 TEST_F(Row, ANeighbourBehindASideThatWasShownInPartGoesAsAnother) {
   site.clear({2.05, 1.2, 4.35, 2.4}).fill({4.4, 1.2, 4.4, 2.35}, CellState::kOccupied);  // half as deep as it was
   ASSERT_EQ(site.revision(10.0).size(), 1u);
@@ -127,6 +117,19 @@ TEST_F(Row, ANeighbourOfWhatHasBeenReplacedGoesAsAnother) {
   ASSERT_EQ(told.size(), 1u);
   EXPECT_EQ(told[0].thing.id, 3u);
   EXPECT_EQ(told[0].thing.kind, ThingKind::kGone);
+}
+
+TEST(Things, ABodyThatIsSeenToGoPieceByPieceIsOne) {
+  DrawnSite site;  // in a row before a wall
+  site.fill({1.0, 2.01, 9.0, 2.01}, CellState::kOccupied).fill({1.0, 2.06, 9.0, 4.36}, CellState::kUnknown);
+  site.fill({1.0, 4.41, 9.0, 4.41}, CellState::kOccupied).begin_with_what_is_drawn();
+  const Drawn body{4.01, 2.06, 6.41, 4.41};
+  site.clear({5.61, 2.06, 6.36, 4.41}).east({4.01, 2.06, 6.41, 4.36});
+  ASSERT_EQ(site.revision(10.0).size(), 1u);
+  for (const ThingEvent& event : site.clear({4.81, 2.06, 5.56, 4.41}).revision(15.0)) EXPECT_FALSE(event.is_new);
+  site.clear({4.06, 2.06, 4.76, 4.41}).west({4.01, 2.06, 6.41, 4.36}).revision(20.0);
+  ASSERT_EQ(site.things.all().size(), 1u);
+  expect_outline(*site.things.all()[0].from, body);
 }
 
 TEST(Things, FloorThatIsClosedOffAtOnceBelongsToTheFaceThatItLiesBehind) {
