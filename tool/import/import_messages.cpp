@@ -154,13 +154,13 @@ std::string settings_line(const ReadMessages& read) {
   if (scan.max_range_m > 0.0) line += " --set laser.max_range_m=" + rounded_text(scan.max_range_m);
   const std::string base =
       read.poses.empty() || read.poses.front().child.empty() ? "base_link" : read.poses.front().child;
-  const auto mount = mount_by(read.transforms, scan.frame, base);
-  if (!mount) {
+  const auto base_from_frame = mount_by(read.transforms, scan.frame, base);
+  if (!base_from_frame) {
     return line + " laser.mount by hand: no transform tells where \"" + scan.frame + "\" lies in \"" + base + "\"";
   }
-  return line + " --set laser.mount.x_m=" + rounded_text(mount->x) +
-         " --set laser.mount.y_m=" + rounded_text(mount->y) +
-         " --set laser.mount.yaw_deg=" + rounded_text(degrees(mount->theta));
+  const Pose2 mount = *base_from_frame * scan.frame_from_scan;
+  return line + " --set laser.mount.x_m=" + rounded_text(mount.x) + " --set laser.mount.y_m=" + rounded_text(mount.y) +
+         " --set laser.mount.yaw_deg=" + rounded_text(degrees(mount.theta));
 }
 
 std::vector<std::string> notes_of(const ReadMessages& read, const WrittenLog& log) {

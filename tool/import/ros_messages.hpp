@@ -16,6 +16,7 @@ namespace deltamap::tool {
 struct RosScan {
   Timestamp time;  ///< of the first beam
   std::string frame;
+  Pose2 frame_from_scan;  ///< where its beams begin; Foxglove's scans tell it
   double first_bearing_rad = 0.0;
   double bearing_step_rad = 0.0;  ///< negative: clockwise
   double min_range_m = 0.0;       ///< shorter: not valid

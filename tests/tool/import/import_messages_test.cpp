@@ -156,6 +156,21 @@ TEST_F(ImportMessages, TakesThePoseFromTransformsAndTellsTheMountThatTheyHave) {
             "laser.mount.yaw_deg=10");
 }
 
+TEST_F(ImportMessages, TellsTheMountThatFoxglovesScansCarry) {
+  const auto pose = [](const std::string& x, const std::string& z, const std::string& w) {
+    return R"("pose": {"position": {"x": )" + x + R"(, "y": 0.1, "z": 0.3}, "orientation": {"x": 0, "y": 0, "z": )" +
+           z + R"(, "w": )" + w + "}}";
+  };
+  const std::string time = R"({"timestamp": {"sec": 1700000000, "nsec": 0}, "frame_id": )";
+  const std::string scan = time + R"("base_link", )" + pose("0.2", "0.0871557427", "0.9961946981") +
+                           R"(, "start_angle": -1, "end_angle": 1, "ranges": [1, 2, 3]})";
+  const std::string odometry = time + R"("odom", )" + pose("1", "0", "1") + "}";
+  const std::vector<TestMessage> messages{{"/scan", "foxglove.LaserScan", kBegin_s, scan},
+                                          {"/odom", "foxglove.PoseInFrame", kBegin_s, odometry}};
+  EXPECT_EQ(import_messages(wanted(mcap_of(messages, "json", ""), false)).notes.front(),
+            "settings to use: --set laser.mount.x_m=0.2 --set laser.mount.y_m=0.1 --set laser.mount.yaw_deg=10");
+}
+
 TEST_F(ImportMessages, TurnsRoundScansThatAreToldClockwise) {
   std::vector<TestMessage> messages = ros1_drive();
   for (TestMessage& message : messages) {
