@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "core/files/shortest_text.hpp"
 #include "core/files/yaml_tree.hpp"
@@ -49,7 +50,7 @@ Polygon polygon_in(const YAML::Node& node, const std::string& file, const std::s
     polygon.emplace_back(coordinate_in(is_pair ? corner[0] : corner["x"], corner, file),
                          coordinate_in(is_pair ? corner[1] : corner["y"], corner, file));
   }
-  return polygon;
+  return without_repeated_corners(std::move(polygon));
 }
 
 ListedPlace place_in(const YAML::Node& node, const std::string& file, const PlaceKeys& keys) {
@@ -115,6 +116,12 @@ void require_utf8(std::string_view text, const std::string& file) {
     line += character->code == U'\n' ? 1 : 0;
     at += character->bytes;
   }
+}
+
+Polygon without_repeated_corners(Polygon polygon) {
+  polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
+  if (polygon.size() > 1 && polygon.back() == polygon.front()) polygon.pop_back();
+  return polygon;
 }
 
 std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& file, const PlaceKeys& keys) {

@@ -14,9 +14,9 @@ namespace deltamap::daemon {
 
 /// How a file names what it lists.
 struct PlaceKeys {
-  std::string list;                  ///< "bays": the one key of the file
-  std::string id;                    ///< "id"
-  std::string polygon;               ///< "polygon": corners, [x, y] or {x: …, y: …} each, m in the map frame
+  std::string list;     ///< "bays": the one key of the file
+  std::string id;       ///< "id"
+  std::string polygon;  ///< "polygon": corners, [x, y] or {x: …, y: …} each, m in the map frame; may be closed
   std::vector<std::string> words{};  ///< other keys, each may be missing
 };
 
@@ -31,6 +31,10 @@ struct ListedPlace {
 
 /// Throws std::runtime_error "FILE: line N: a character that is not UTF-8 …".
 void require_utf8(std::string_view text, const std::string& file);
+
+/// Without corners that repeat the one before: GeoJSON, WKT and Shapely close an outline by its first, and CAD programs
+/// double some. May leave fewer than three.
+[[nodiscard]] Polygon without_repeated_corners(Polygon polygon);
 
 /// `file` stands for the text in complaints. Corners count to a millimetre. Throws std::runtime_error.
 [[nodiscard]] std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& file, const PlaceKeys& keys);

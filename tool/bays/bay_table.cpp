@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "core/geometry/angle.hpp"
 #include "core/trimmed.hpp"
@@ -47,18 +48,35 @@ std::vector<std::string> cells_of(const std::string& line, char separator) {
     } else if (line[i] == separator && !is_quoted) {
       cells.emplace_back();
     } else {
-      cells.back() += line[i];
+      cells.back() += line[i] == '\n' ? ' ' : line[i];
     }
   }
   for (std::string& cell : cells) cell = trimmed(cell);
   return cells;
 }
 
-std::vector<std::string> lines_in(const std::string& text) {
-  std::vector<std::string> lines;
-  for (std::size_t from = 0; from < text.size();) {
+bool has_odd_quotes(const std::string& text) { return std::count(text.begin(), text.end(), '"') % 2 == 1; }
+
+struct TableLine {
+  std::size_t number;  // of the first, from 1
+  std::string text;
+};
+
+/// A cell in quotes may hold line breaks (RFC 4180, 2.6): such lines belong together.
+std::vector<TableLine> lines_in(const std::string& text) {
+  std::vector<TableLine> lines;
+  std::size_t number = 1;
+  bool is_quoted = false;
+  for (std::size_t from = 0; from < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', from), text.size());
-    lines.push_back(text.substr(from, end - from));
+    std::string line = text.substr(from, end - from);
+    if (line.ends_with('\r')) line.pop_back();
+    if (is_quoted) {
+      lines.back().text += '\n' + line;
+    } else {
+      lines.push_back({number, line});
+    }
+    is_quoted = is_quoted != has_odd_quotes(line);
     from = end + 1;
   }
   return lines;
@@ -74,6 +92,7 @@ Polygon polygon_of(const TableRow& row, const std::string& told) {
     if (!x_m || !y_m) row.refuse("'polygon_m' must be corners as 'x y; x y; x y', not '" + told + "'");
     polygon.emplace_back(*x_m, *y_m);
   }
+  polygon = daemon::without_repeated_corners(std::move(polygon));
   if (polygon.size() < 3) row.refuse("'polygon_m' needs at least three corners");
   return polygon;
 }
@@ -106,11 +125,12 @@ Bay bay_of(const TableRow& row, const std::optional<BaySize>& size) {
 ImportedBays bays_of_csv(const std::string& text, const std::string& name, const std::optional<BaySize>& size) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   daemon::require_utf8(text, name);
-  std::vector<std::string> lines = lines_in(text);
+  std::vector<TableLine> lines = lines_in(text);
   if (lines.empty()) throw std::runtime_error(name + ": is empty");
-  if (lines[0].starts_with(kByteOrderMark)) lines[0].erase(0, kByteOrderMark.size());
-  const char separator = lines[0].find(';') == std::string::npos ? ',' : ';';
-  const std::vector<std::string> columns = cells_of(lines[0], separator);
+  std::string& head = lines[0].text;
+  if (head.starts_with(kByteOrderMark)) head.erase(0, kByteOrderMark.size());
+  const char separator = head.find(';') == std::string::npos ? ',' : ';';
+  const std::vector<std::string> columns = cells_of(head, separator);
   for (const std::string& column : columns) {
     if (std::find(kBayColumns.begin(), kBayColumns.end(), column) == kBayColumns.end())
       TableRow{name + ": line 1", {}}.refuse("nothing is called '" + column +
@@ -121,11 +141,12 @@ ImportedBays bays_of_csv(const std::string& text, const std::string& name, const
   }
   ImportedBays bays;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    if (trimmed(lines[i]).empty()) continue;
-    const std::vector<std::string> cells = cells_of(lines[i], separator);
-    TableRow row{name + ": line " + std::to_string(i + 1), {}};
+    if (trimmed(lines[i].text).empty()) continue;
+    const std::vector<std::string> cells = cells_of(lines[i].text, separator);
+    TableRow row{name + ": line " + std::to_string(lines[i].number), {}};
     if (cells.size() != columns.size())
-      row.refuse("has " + std::to_string(cells.size()) + " cells, the first line " + std::to_string(columns.size()));
+      row.refuse("has " + std::to_string(cells.size()) + " cells, the first line " + std::to_string(columns.size()) +
+                 (has_odd_quotes(lines[i].text) ? ": is a quote not closed?" : ""));
     for (std::size_t c = 0; c < columns.size(); ++c) row.cells[columns[c]] = cells[c];
     bays.bays.push_back(bay_of(row, size));
   }

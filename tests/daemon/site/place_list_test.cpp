@@ -19,6 +19,16 @@ TEST(PlaceList, WhatIsWrittenReadsBackWhateverItsWords) {
   EXPECT_NEAR(back[0].polygon[1].x(), 1.2345, 0.0006);
 }
 
+TEST(PlaceList, AnOutlineMayRepeatCorners) {
+  const std::string doubled = "[0, 0], [2, 0], [2.0001, 0], [2, 1], [0, 1]";
+  const std::string yaml = "zones: [{zoneId: A, vertices: [" + doubled + ", [0.0, 0.0]]}]";
+  const auto places = places_in(yaml, "zones.yaml", kKeys);
+  ASSERT_EQ(places.size(), 1u);
+  EXPECT_EQ(places[0].polygon, (Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}}));
+  EXPECT_EQ(without_repeated_corners({{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}}).size(), 2u);
+  EXPECT_TRUE(without_repeated_corners({}).empty());
+}
+
 TEST(PlaceList, EveryCharacterOfAnIdIsWrittenAsItIs) {
   // Control characters, blanks that are none, characters that are none (U+FFFF, U+FDD0, U+10FFFE), and beyond 16 bits.
   for (const std::string id : {"a\tb\r\n\x7F\xC2\x85", "\xC2\xA0\xE2\x80\xA8\xEF\xBB\xBF", "\xEF\xBF\xBF",

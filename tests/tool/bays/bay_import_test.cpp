@@ -123,6 +123,23 @@ TEST(BayImport, ATableGivesMiddlesOrPolygons) {
   EXPECT_EQ(bays.bays[1].polygon, (Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.5}}));
 }
 
+TEST(BayImport, AnOutlineMayBeClosedByItsFirstCorner) {
+  EXPECT_EQ(csv_complaint("id,polygon_m\nA,0 0; 2 0; 0 0\n"),
+            "bays.csv: line 2: 'polygon_m' needs at least three corners");
+  const ImportedBays bays = bays_of_csv("id,polygon_m\nA,0 0; 2 0; 2 1.5; 0 0\n", "bays.csv", std::nullopt);
+  EXPECT_EQ(bays.bays.at(0).polygon, (Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.5}}));
+}
+
+TEST(BayImport, ACellInQuotesMayHoldLineBreaks) {
+  const std::string table = "id;name;x_m;y_m\r\nA;\"Row \"\"A\"\"\r\nbay 1\";2;3\r\nB;;4;x\r\n";
+  EXPECT_EQ(csv_complaint(table), "bays.csv: line 4: 'y_m' must be a number with a point, not 'x'");
+  const ImportedBays bays = bays_of_csv(table.substr(0, table.find("B;")), "bays.csv", kSize);
+  ASSERT_EQ(bays.bays.size(), 1u);
+  EXPECT_EQ(bays.bays[0].name, "Row \"A\" bay 1");
+  EXPECT_EQ(csv_complaint("id,name,x_m,y_m\nA,\"open,1,2\nB,,1,2\n"),
+            "bays.csv: line 2: has 2 cells, the first line 4: is a quote not closed?");
+}
+
 TEST(BayImport, SaysInOneLineWhatIsWrongWithATable) {
   EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1\n"), "bays.csv: line 2: has 2 cells, the first line 3");
   EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1,zwei\n"),
