@@ -201,11 +201,21 @@ Outcome seen_outcome(const daemon::Settings& settings, double minutes, std::uint
   return outcome;
 }
 
+/// They come into the yard along an aisle: nobody begins where loads shut him in.
+void begin_in_aisle(const BayYard& yard, std::vector<Point2>& path) {
+  const auto aisle = std::find_if(path.begin(), path.end(), [&](const Point2& corner) {
+    return std::none_of(yard.bays().begin(), yard.bays().end(),
+                        [&](const auto& bay) { return contains(bay.polygon, corner); });
+  });
+  if (aisle != path.end()) std::rotate(path.begin(), aisle, path.end());
+}
+
 std::vector<simulation::Person> people_in(const BayYard& yard, Random& random) {
   std::vector<simulation::Person> people;
   for (int i = 0; i < kPeople; ++i) {
     simulation::PersonParams params;
     for (int corner = 0; corner < 12; ++corner) params.path.push_back(yard.floor(random));
+    begin_in_aisle(yard, params.path);
     params.closed = true;
     params.speed_m_per_s = random.uniform(0.6, 1.5);
     params.radius_m = random.uniform(0.15, 0.25);

@@ -15,11 +15,14 @@ class Beat {
 
   /// The corner that is walked to.
   [[nodiscard]] const Point2& aim() const { return corners_[aim_]; }
+  [[nodiscard]] std::size_t corners() const { return corners_.size(); }
   [[nodiscard]] bool aims_at_first() const { return aim_ == 0; }
   /// It is reached: on to the next.
   void reach();
   /// Back where one came from.
   void turn_back();
+  /// From wherever one is, straight to that corner, of corners().
+  void head_for(std::size_t corner) { aim_ = corner; }
   /// From outside of the corners to the first.
   void begin_anew();
 

@@ -6,6 +6,11 @@
 #include "simulation/movers/manners.hpp"
 
 namespace deltamap::simulation {
+namespace {
+
+constexpr double kFewSteps_m = 8.0;  // to and fro across an aisle of 4 m
+
+}  // namespace
 
 Person::Person(PersonParams params, Random random)
     : params_{std::move(params)},
@@ -36,15 +41,25 @@ void Person::move(double dt_s, const RayCaster& world, const Circle& robot, std:
   const Point2 next = position_ + step_m * direction;
   if (is_blocked(next, direction, world, robot, leaves)) {
     blocked_s_ += dt_s;
-    if (blocked_s_ > kPatience_s) {
-      blocked_s_ = 0.0;
-      beat_.turn_back();
-    }
+    if (blocked_s_ > kPatience_s) look_for_another_way();
     return;
   }
   blocked_s_ = 0.0;
   velocity_ = params_.speed_m_per_s * direction;
   position_ = next;
+  since_blocked_m_ += step_m;
+}
+
+/// Back where one came from. Who has walked but a few steps since the way was shut before is shut in on the beat, and
+/// goes to any other corner of it.
+void Person::look_for_another_way() {
+  if (since_blocked_m_ < kFewSteps_m && beat_.corners() > 2) {
+    beat_.head_for(random_.index_below(static_cast<std::uint32_t>(beat_.corners())));
+  } else {
+    beat_.turn_back();
+  }
+  blocked_s_ = 0.0;
+  since_blocked_m_ = 0.0;
 }
 
 bool Person::is_blocked(const Point2& next, const Point2& direction, const RayCaster& world, const Circle& robot,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Someone who walks along a path, stops, and walks on; waits for the robot, and turns back where the way is blocked.
+// Someone who walks along a path, stops, and walks on; waits for the robot, turns back where the way is blocked, and
+// leaves the path where it is blocked both ways.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -34,6 +36,7 @@ class Person {
   [[nodiscard]] Circle body_after(double seconds) const { return {position_ + seconds * velocity_, params_.radius_m}; }
 
  private:
+  void look_for_another_way();
   [[nodiscard]] bool is_blocked(const Point2& next, const Point2& direction, const RayCaster& world,
                                 const Circle& robot, std::span<const Segment> leaves) const;
 
@@ -45,6 +48,7 @@ class Person {
   bool standing_ = false;
   double phase_left_s_ = 0.0;
   double blocked_s_ = 0.0;
+  double since_blocked_m_ = HUGE_VAL;  // walked since the way was shut
 };
 
 }  // namespace deltamap::simulation

@@ -56,5 +56,35 @@ TEST(Person, DoesNotWalkIntoAContainerThatStandsInTheWay) {
   }
 }
 
+/// Four corners, the first before a recess that boxes shut towards the second and the last.
+const std::vector<Point2> kPastARecess{{10, 10}, {18, 10}, {10, 18}, {2, 10}};
+const World kRecess = walled_hall()
+                          .with({2, ObjectKind::kContainer, Box{{12, 10}, 1, 4, 0}})
+                          .with({3, ObjectKind::kContainer, Box{{8, 10}, 1, 4, 0}});
+
+TEST(Person, GoesToAnotherCornerWhereThePathIsShutBothWays) {
+  Person person{{.path = kPastARecess, .closed = true, .walk_least_s = 1e5, .walk_most_s = 1e5}, Random{1}};
+  const RayCaster world{kRecess};
+  double farthest = 0.0;
+  for (int i = 0; i < 40'000; ++i) {  // 200 s
+    person.move(kPersonStep_s, world, kFarRobot);
+    farthest = std::max(farthest, person.body().centre.y());
+  }
+  EXPECT_GT(farthest, 17.5);
+}
+
+TEST(Person, TurnsBackWhereTheWayBetweenTwoBlocksIsLong) {
+  const std::vector<Point2> path{{5, 5}, {18, 5}, {18, 18}, {5, 18}};
+  Person person{{.path = path, .closed = true, .walk_least_s = 1e5, .walk_most_s = 1e5}, Random{1}};
+  const RayCaster world{walled_hall()
+                            .with({2, ObjectKind::kContainer, Box{{15, 5}, 1, 4, 0}})
+                            .with({3, ObjectKind::kContainer, Box{{5, 15}, 4, 1, 0}})};
+  for (int i = 0; i < 60'000; ++i) {  // 300 s between two boxes, by the corner in between
+    person.move(kPersonStep_s, world, kFarRobot);
+    const Point2 at = person.body().centre;
+    ASSERT_LT(std::min(at.x(), at.y()), 5.0 + 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace deltamap::simulation
