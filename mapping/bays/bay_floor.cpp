@@ -177,7 +177,9 @@ std::optional<std::size_t> BayFloor::mark_beam(const Point2& from, const Point2&
   int hit = first;
   while (hit <= last_core && path.steps[static_cast<std::size_t>(hit)].to_m <= range_m) ++hit;
   const bool ends_inside = hit <= last_core;
-  for (int i = first; i <= std::min(hit, last_core); ++i) {
+  // Also of the rim beyond the floor: a face that stood there may have gone.
+  const int last = ends_inside ? hit : path.count - 1;
+  for (int i = first; i <= last; ++i) {
     if (path.steps[static_cast<std::size_t>(i)].to_m <= range_m - kFreeBefore_m) cell_of(i).marks |= kWentThrough;
   }
   if (!ends_inside) return std::nullopt;
