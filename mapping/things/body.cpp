@@ -117,6 +117,12 @@ bool shows_free_inside(const Outline& outline, const ChangedMap& step) {
   return inside >= kFreeInside;
 }
 
+bool changes_within(const Outline& outline, const ChangedMap& step) {
+  return std::any_of(step.changes.begin(), step.changes.end(), [&](const CellChange& change) {
+    return is_inside(outline, step.map.geometry().centre_of(change.cell), 0.0);
+  });
+}
+
 void forget_gone(Body& body) {
   body.gone.clear();
   body.shown.clear();
@@ -258,7 +264,7 @@ void push_back_by(const ChangedMap& step, Body& body, double one_look_s) {
   Thing& thing = body.thing;
   const bool has_just_left = body.told && thing.kind == ThingKind::kGone && body.most_faces_come > 0 && thing.from &&
                              !thing.at && seconds(step.time - body.grown) <= one_look_s;
-  if (!has_just_left || step.takes_back) return;
+  if (!has_just_left || step.takes_back || !changes_within(*thing.from, step)) return;
   thing.at = pushed_back(*thing.from, step.map);
   if (!thing.at) return;
   thing.kind = ThingKind::kMoved;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace deltamap::mapping::things {
 namespace {
@@ -139,27 +140,28 @@ bool is_mostly(const Outline& outline, int side, double beyond_m, double step_m,
   return seen >= kSeenShare * all;
 }
 
-/// How far floor has become free beyond the surface towards +v (sign 1) or -v: the middle one of what its columns
-/// reach.
-double depth_beyond(const std::vector<Point2>& inside, const Extent& faces, double resolution_m, double sign) {
-  const auto columns = static_cast<std::size_t>(std::lround(faces.along_u() / resolution_m)) + 1;
-  std::vector<double> reach(columns, 0.0);
-  const double from_v = sign > 0 ? faces.high_v : faces.low_v;
-  for (const Point2& own : inside) {
-    const double column = std::floor((own.x() - faces.low_u) / resolution_m + 0.5);
-    if (column < 0 || column >= static_cast<double>(columns)) continue;
-    double& deepest = reach[static_cast<std::size_t>(column)];
-    deepest = std::max(deepest, sign * (own.y() - from_v));
-  }
-  const auto middle = reach.begin() + static_cast<std::ptrdiff_t>(columns * 3 / 5);
+/// The middle one of what the columns reach.
+double middle_reach(std::vector<double> reach) {
+  const auto middle = reach.begin() + static_cast<std::ptrdiff_t>(reach.size() * 3 / 5);
   std::nth_element(reach.begin(), middle, reach.end());
   return *middle;
 }
 
-/// With the floor beyond it, where that is more than a surface drawn a cell beside.
+/// With the floor that has become free beyond the surface towards +v and -v, where that is more than a surface drawn a
+/// cell beside.
 Extent with_floor(Extent faces, const std::vector<Point2>& inside, double resolution_m) {
-  const double ahead_m = depth_beyond(inside, faces, resolution_m, 1.0);
-  const double behind_m = depth_beyond(inside, faces, resolution_m, -1.0);
+  const auto columns = static_cast<std::size_t>(std::lround(faces.along_u() / resolution_m)) + 1;
+  std::vector<double> ahead(columns, 0.0);
+  std::vector<double> behind(columns, 0.0);
+  for (const Point2& own : inside) {
+    const double column = std::floor((own.x() - faces.low_u) / resolution_m + 0.5);
+    if (column < 0 || column >= static_cast<double>(columns)) continue;
+    const auto at = static_cast<std::size_t>(column);
+    ahead[at] = std::max(ahead[at], own.y() - faces.high_v);
+    behind[at] = std::max(behind[at], faces.low_v - own.y());
+  }
+  const double ahead_m = middle_reach(std::move(ahead));
+  const double behind_m = middle_reach(std::move(behind));
   const bool is_face = faces.along_v() < kOneFace_m;  // what lies before it was free
   if (ahead_m > kBeside_cells * resolution_m && (!is_face || ahead_m > behind_m))
     faces.high_v += ahead_m + resolution_m;

@@ -19,7 +19,7 @@ constexpr double kBeside_m = 0.25;     // that the shorter one may reach beyond 
 constexpr double kFloorBetween = 0.3;  // share of free cells from which on there is floor between
 constexpr double kLeastPush_m = 0.15;  // less is a correction of its place
 constexpr int kFrontReach = 1;         // cells
-constexpr double kFrontShare = 0.7;    // of its width, by the surface that is its front now
+constexpr double kFrontOpen = 0.3;     // of its width, where the surface that is its front now was not seen
 constexpr double kFloorBefore = 0.7;   // share of free cells before that
 constexpr int kBetween = 12;           // samples along and across
 
@@ -80,14 +80,14 @@ double free_share(const Span& span, const Pose2& map_from_axes, const OccupancyG
 bool is_front(const Span& body, std::size_t way, double at, const Pose2& map_from_axes, const OccupancyGrid& map) {
   const std::size_t across = 1 - way;
   const int steps = std::max(1, static_cast<int>(body.extent(across) / map.resolution_m()));
-  int covered = 0;
-  for (int i = 0; i < steps; ++i) {
+  int open = 0;
+  for (int i = 0; i < steps && open <= kFrontOpen * steps; ++i) {
     Point2 own;
     own[static_cast<int>(way)] = at;
     own[static_cast<int>(across)] = body.low[across] + (i + 0.5) / steps * body.extent(across);
-    covered += has_occupied_within(map, map.geometry().cell_at(map_from_axes * own), kFrontReach) ? 1 : 0;
+    open += has_occupied_within(map, map.geometry().cell_at(map_from_axes * own), kFrontReach) ? 0 : 1;
   }
-  return covered >= kFrontShare * steps;
+  return open <= kFrontOpen * steps;
 }
 
 /// So far from that end of the way its front lies now.

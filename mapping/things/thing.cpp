@@ -52,9 +52,11 @@ bool is_closed(const Outline& outline) {
 }
 
 bool is_inside(const Outline& outline, const Point2& place, double margin_m) {
-  const Point2 own = inverse(map_from_outline(outline)) * place;
-  return std::abs(own.x()) <= 0.5 * outline.length_m + margin_m &&
-         std::abs(own.y()) <= 0.5 * outline.width_m + margin_m;
+  const Point2 away = place - outline.centre;
+  const double cosine = std::cos(outline.heading_rad);
+  const double sine = std::sin(outline.heading_rad);
+  return std::abs(cosine * away.x() + sine * away.y()) <= 0.5 * outline.length_m + margin_m &&
+         std::abs(cosine * away.y() - sine * away.x()) <= 0.5 * outline.width_m + margin_m;
 }
 
 double overlap_share(const Outline& a, const Outline& b) {
