@@ -87,7 +87,8 @@ listener=$!
 sleep 0.5
 touch up
 wait "$listener" || true
-stated 'told' 'paho, 4 raises, 4 raises, 4 raises|libmosquitto, 4, 4, 4|MQTT.js, three without an error' "$(cat paho.log c.log js.log | paste -sd '|')"
+stated 'told' 'paho, 4 raises, 4 raises, 4 raises|libmosquitto, 4, 4, 4|MQTT.js, three without an error' \
+  "$(cat paho.log c.log js.log | paste -sd '|')"
 stated 'arrived' 'c/1,c/2,js/0,js/1,js/2,paho/1,paho/2' "$(sort -u heard.log | paste -sd ,)"
 stated 'retained' 'js/0,js/1,js/2,paho/1,paho/2' \
   "$({ mosquitto_sub -h 127.0.0.1 -p $port -t '+/+' -F %t -W 1 2> /dev/null || true; } | sort | paste -sd ,)"
