@@ -16,8 +16,7 @@ namespace {
 constexpr double kLeastEdge_m = 0.1;
 constexpr double kMostEdge_m = 0.25;
 constexpr double kCellsAlong = 12.0;  // of the longest side, where the edge lets them be
-constexpr int kMostAlong = 24;        // then the edge grows
-constexpr std::size_t kMostCells = std::size_t{kMostAlong} * kMostAlong;
+constexpr std::size_t kMostCells = std::size_t{kMostCellsAlong} * kMostCellsAlong;
 constexpr double kRim_m = 0.25;  // so far before the bay a face may stand that belongs to what stands in it
 constexpr double kFreeBefore_m = 0.15;
 
@@ -58,17 +57,6 @@ double heading_of(const Polygon& polygon) {
 
 }  // namespace
 
-/// The cells that a line passes, in its direction, with the distance at which it enters and leaves each.
-struct BayFloor::Path {
-  struct Step {
-    int cell = 0;
-    double from_m = 0.0;
-    double to_m = 0.0;
-  };
-  std::array<Step, 2 * kMostAlong + 2> steps;
-  int count = 0;
-};
-
 BayFloor::BayFloor(const Polygon& polygon) {
   const Pose2 turned{0.0, 0.0, heading_of(polygon)};
   Polygon in_bay;
@@ -76,24 +64,25 @@ BayFloor::BayFloor(const Polygon& polygon) {
   const PolygonBox box = bounding_box(in_bay);
   const Point2 size = box.high - box.low;
   const double longest_m = size.maxCoeff();
-  edge_m_ = std::max(std::clamp(longest_m / kCellsAlong, kLeastEdge_m, kMostEdge_m), longest_m / kMostAlong);
-  columns_ = std::clamp(static_cast<int>(std::lround(size.x() / edge_m_)), 1, kMostAlong);
-  rows_ = std::clamp(static_cast<int>(std::lround(size.y() / edge_m_)), 1, kMostAlong);
+  layout_.edge_m =
+      std::max(std::clamp(longest_m / kCellsAlong, kLeastEdge_m, kMostEdge_m), longest_m / kMostCellsAlong);
+  layout_.columns = std::clamp(static_cast<int>(std::lround(size.x() / layout_.edge_m)), 1, kMostCellsAlong);
+  layout_.rows = std::clamp(static_cast<int>(std::lround(size.y() / layout_.edge_m)), 1, kMostCellsAlong);
   // The cells are centred on the box: half a cell of it may lie beyond.
-  const Point2 spare = size - edge_m_ * Point2{columns_, rows_};
+  const Point2 spare = size - layout_.edge_m * Point2{layout_.columns, layout_.rows};
   const Point2 corner = turned * Point2{box.low + 0.5 * spare};
   const Pose2 map_from_bay{corner.x(), corner.y(), turned.theta};
   bay_from_map_ = inverse(map_from_bay);
   middle_ = turned * Point2{0.5 * (box.low + box.high)};
   radius_m_ = 0.5 * size.norm() + kRim_m;
-  cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const int place = row * columns_ + column;
+  cells_.resize(static_cast<std::size_t>(layout_.cells()));
+  for (int row = 0; row < layout_.rows; ++row) {
+    for (int column = 0; column < layout_.columns; ++column) {
+      const int place = row * layout_.columns + column;
       FloorCell& cell = cells_[static_cast<std::size_t>(place)];
-      const Point2 at = map_from_bay * Point2{(column + 0.5) * edge_m_, (row + 0.5) * edge_m_};
+      const Point2 at = map_from_bay * Point2{(column + 0.5) * layout_.edge_m, (row + 0.5) * layout_.edge_m};
       cell.is_inside = contains(polygon, at);
-      cell.is_core = cell.is_inside && distance_from_sides(polygon, at) >= 0.75 * edge_m_;
+      cell.is_core = cell.is_inside && distance_from_sides(polygon, at) >= 0.75 * layout_.edge_m;
       core_cells_ += cell.is_core ? 1 : 0;
     }
   }
@@ -115,72 +104,25 @@ void BayFloor::take_as_told() {
   for (FloorCell& cell : cells_) cell.is_risen = false;
 }
 
-BayFloor::Path BayFloor::path_of(const Point2& from, const Point2& direction, double range_m) const {
-  Path path;
-  const std::array<double, 2> size{columns_ * edge_m_, rows_ * edge_m_};
-  double enters_m = 0.0;
-  double leaves_m = HUGE_VAL;
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    if (std::abs(direction[axis]) < 1e-9) {
-      if (from[axis] < 0.0 || from[axis] >= size[a]) return path;
-      continue;
-    }
-    const double low_m = -from[axis] / direction[axis];
-    const double high_m = (size[a] - from[axis]) / direction[axis];
-    enters_m = std::max(enters_m, std::min(low_m, high_m));
-    leaves_m = std::min(leaves_m, std::max(low_m, high_m));
-  }
-  if (enters_m >= leaves_m || range_m < enters_m - kRim_m) return path;
-  const Point2 begin = from + enters_m * direction;
-  int column = std::clamp(static_cast<int>(begin.x() / edge_m_), 0, columns_ - 1);
-  int row = std::clamp(static_cast<int>(begin.y() / edge_m_), 0, rows_ - 1);
-  const int step_column = direction.x() > 0.0 ? 1 : -1;
-  const int step_row = direction.y() > 0.0 ? 1 : -1;
-  const auto border = [&](int index, int step, int axis) {
-    if (std::abs(direction[axis]) < 1e-9) return HUGE_VAL;
-    return ((index + (step > 0 ? 1 : 0)) * edge_m_ - from[axis]) / direction[axis];
-  };
-  double next_column_m = border(column, step_column, 0);
-  double next_row_m = border(row, step_row, 1);
-  double at_m = enters_m;
-  while (column >= 0 && column < columns_ && row >= 0 && row < rows_ &&
-         path.count < static_cast<int>(path.steps.size())) {
-    const double to_m = std::min({next_column_m, next_row_m, leaves_m});
-    path.steps[static_cast<std::size_t>(path.count++)] = {row * columns_ + column, at_m, to_m};
-    at_m = to_m;
-    if (next_column_m < next_row_m) {
-      column += step_column;
-      next_column_m += edge_m_ / std::abs(direction.x());
-    } else {
-      row += step_row;
-      next_row_m += edge_m_ / std::abs(direction.y());
-    }
-  }
-  return path;
-}
-
 std::optional<std::size_t> BayFloor::mark_beam(const Point2& from, const Point2& end) {
   const double range_m = (end - from).norm();
   if (range_m <= 0.0) return std::nullopt;
-  const Path path = path_of(from, (end - from) / range_m, range_m);
-  const auto cell_of = [&](int step) -> FloorCell& {
-    return cells_[static_cast<std::size_t>(path.steps[static_cast<std::size_t>(step)].cell)];
-  };
+  const LineOfCells path = cells_on_line(layout_, from, (end - from) / range_m, range_m + kRim_m);
+  const auto cell_of = [&](int step) -> FloorCell& { return cells_[static_cast<std::size_t>(path[step].cell)]; };
   int first = 0;
   while (first < path.count && !cell_of(first).is_inside) ++first;
   int last_core = path.count - 1;
   while (last_core >= first && !cell_of(last_core).is_core) --last_core;
   if (last_core < first) return std::nullopt;  // it touches the rim alone
-  const double enters_m = path.steps[static_cast<std::size_t>(first)].from_m;
+  const double enters_m = path[first].from_m;
   if (range_m < enters_m - kRim_m) return std::nullopt;  // something before the bay covers it
   int hit = first;
-  while (hit <= last_core && path.steps[static_cast<std::size_t>(hit)].to_m <= range_m) ++hit;
+  while (hit <= last_core && path[hit].to_m <= range_m) ++hit;
   const bool ends_inside = hit <= last_core;
   // Also of the rim beyond the floor: a face that stood there may have gone.
   const int last = ends_inside ? hit : path.count - 1;
   for (int i = first; i <= last; ++i) {
-    if (path.steps[static_cast<std::size_t>(i)].to_m <= range_m - kFreeBefore_m) cell_of(i).marks |= kWentThrough;
+    if (path[i].to_m <= range_m - kFreeBefore_m) cell_of(i).marks |= kWentThrough;
   }
   if (!ends_inside) return std::nullopt;
   FloorCell& face = cell_of(hit);
@@ -189,7 +131,7 @@ std::optional<std::size_t> BayFloor::mark_beam(const Point2& from, const Point2&
     FloorCell& behind = cell_of(i);
     if (behind.free_ds <= face.since_ds) behind.marks |= kBehindBody;  // else it was free, seen from elsewhere
   }
-  return static_cast<std::size_t>(path.steps[static_cast<std::size_t>(hit)].cell);
+  return static_cast<std::size_t>(path[hit].cell);
 }
 
 /// Of beams that follow each other and all end in the bay.
@@ -222,11 +164,11 @@ void BayFloor::drop_lost_shadows() {
 
 /// A pose that is a little off moves the face of a load by a cell: that is no new one.
 bool BayFloor::is_beside_what_stood(std::size_t index) const {
-  const int column = static_cast<int>(index) % columns_;
-  const int row = static_cast<int>(index) / columns_;
-  for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
-    for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
-      const int place = r * columns_ + c;
+  const int column = static_cast<int>(index) % layout_.columns;
+  const int row = static_cast<int>(index) / layout_.columns;
+  for (int r = std::max(0, row - 1); r <= std::min(layout_.rows - 1, row + 1); ++r) {
+    for (int c = std::max(0, column - 1); c <= std::min(layout_.columns - 1, column + 1); ++c) {
+      const int place = r * layout_.columns + c;
       const FloorCell& beside = cells_[static_cast<std::size_t>(place)];
       if (beside.is_gathered && !beside.is_risen) return true;
     }
@@ -280,9 +222,9 @@ void BayFloor::take_marks(std::uint32_t time_ds) {
 struct BayFloor::Cluster {
   std::array<std::int16_t, kMostCells> members;
   std::size_t count = 0;
-  int low_column = kMostAlong;
+  int low_column = kMostCellsAlong;
   int high_column = 0;
-  int low_row = kMostAlong;
+  int low_row = kMostCellsAlong;
   int high_row = 0;
 
   void add(int cell, int columns) {
@@ -303,14 +245,15 @@ BayFloor::Cluster BayFloor::cluster_from(int start) {
     FloorCell& cell = cells_[static_cast<std::size_t>(index)];
     if (cell.is_gathered || cell.evidence < kTaken) return;
     cell.is_gathered = true;
-    cluster.add(index, columns_);
+    cluster.add(index, layout_.columns);
   };
   take(start);
   for (std::size_t next = 0; next < cluster.count; ++next) {
-    const int column = cluster.members[next] % columns_;
-    const int row = cluster.members[next] / columns_;
-    for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
-      for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) take(r * columns_ + c);
+    const int column = cluster.members[next] % layout_.columns;
+    const int row = cluster.members[next] / layout_.columns;
+    for (int r = std::max(0, row - 1); r <= std::min(layout_.rows - 1, row + 1); ++r) {
+      for (int c = std::max(0, column - 1); c <= std::min(layout_.columns - 1, column + 1); ++c)
+        take(r * layout_.columns + c);
     }
   }
   return cluster;
@@ -320,14 +263,14 @@ BayFloor::Cluster BayFloor::cluster_from(int start) {
 /// people.
 void BayFloor::find_bodies() {
   for (FloorCell& cell : cells_) cell.is_body = cell.is_gathered = false;
-  for (int start = 0; start < columns_ * rows_; ++start) {
+  for (int start = 0; start < layout_.cells(); ++start) {
     if (cells_[static_cast<std::size_t>(start)].evidence < kTaken) continue;
     const Cluster cluster = cluster_from(start);
     const std::span members{cluster.members.data(), cluster.count};
     const bool has_face = std::any_of(members.begin(), members.end(), [&](std::int16_t member) {
       return cells_[static_cast<std::size_t>(member)].faces >= kFaceLooks;
     });
-    if (cluster.count == 0 || (!has_face && cluster.across_m(edge_m_) < kBody_m)) continue;
+    if (cluster.count == 0 || (!has_face && cluster.across_m(layout_.edge_m) < kBody_m)) continue;
     for (const std::int16_t member : members) cells_[static_cast<std::size_t>(member)].is_body = true;
   }
 }
@@ -380,6 +323,17 @@ FloorCounts BayFloor::counts(std::uint32_t time_ds, std::uint32_t window_ds) con
     }
   }
   return counts;
+}
+
+std::uint32_t BayFloor::body_seen_ds() const {
+  std::uint32_t on_floor_ds = 0;
+  std::uint32_t on_rim_ds = 0;
+  for (const FloorCell& cell : cells_) {
+    if (!cell.is_body) continue;
+    std::uint32_t& seen_ds = cell.is_core ? on_floor_ds : on_rim_ds;
+    seen_ds = std::max(seen_ds, cell.seen_ds);
+  }
+  return on_floor_ds > 0 ? on_floor_ds : on_rim_ds;
 }
 
 std::uint32_t BayFloor::seen_since_ds(std::uint32_t time_ds, std::uint32_t window_ds, int least_cells) const {

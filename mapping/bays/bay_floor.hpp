@@ -11,6 +11,7 @@
 
 #include "core/messages.hpp"
 #include "mapping/bays/bay.hpp"
+#include "mapping/bays/line_of_cells.hpp"
 
 namespace deltamap::mapping::bays {
 
@@ -38,6 +39,8 @@ class BayFloor {
   [[nodiscard]] FloorCounts counts(std::uint32_t time_ds, std::uint32_t window_ds) const;
   /// At least `least_cells` of what counts() calls known have been seen then or later, tenths of a second.
   [[nodiscard]] std::uint32_t seen_since_ds(std::uint32_t time_ds, std::uint32_t window_ds, int least_cells) const;
+  /// The last look that a body on the floor agreed with, or on the rim where the floor has none; 0 where none stands.
+  [[nodiscard]] std::uint32_t body_seen_ds() const;
   /// Of what stands now a state is told: it has risen no more.
   void take_as_told();
   /// Nothing has been seen.
@@ -62,11 +65,8 @@ class BayFloor {
     bool is_risen = false;     // as FloorCounts::risen, of any ends
     bool is_gathered = false;  // into a cluster, of the newest look
   };
-  struct Path;
   struct Cluster;
 
-  /// None where the beam ends clearly before the bay.
-  [[nodiscard]] Path path_of(const Point2& from, const Point2& direction, double range_m) const;
   /// The cell that it ends in.
   std::optional<std::size_t> mark_beam(const Point2& from, const Point2& end);
   struct BeamEnds;
@@ -81,9 +81,7 @@ class BayFloor {
   [[nodiscard]] bool is_known(const FloorCell& cell, std::uint32_t time_ds, std::uint32_t window_ds) const;
 
   Pose2 bay_from_map_;
-  double edge_m_ = 0.0;  // of a cell
-  int columns_ = 0;
-  int rows_ = 0;
+  CellLayout layout_;
   int core_cells_ = 0;
   Point2 middle_{0.0, 0.0};
   double radius_m_ = 0.0;

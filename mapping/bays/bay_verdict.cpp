@@ -10,8 +10,8 @@ namespace {
 constexpr double kSeenOfEmpty = 0.75;  // of the floor: what could hide in the rest is no load
 constexpr double kSeenOfTaken = 0.7;
 constexpr double kFull = 0.8;           // of all its floor is taken: it is full,
-constexpr double kFullAfterAll = 0.95;  // what was partly full is not, for a load throws a long shadow
-constexpr int kRisen = 3;               // cells: unless another load stands where the floor was free;
+constexpr double kFullAfterAll = 0.95;  // where the shadow of a load may be all: what was partly full, unless another
+constexpr int kRisen = 3;               // load stands (cells), and what was full, if another stands there now;
 constexpr double kStaysFull = 0.7;      // and stays so
 constexpr double kFreeOfFull = 0.1;     // of all its floor is seen free: from there on it is partly full
 constexpr double kStaysFullFree = 0.15;
@@ -47,10 +47,11 @@ std::optional<BayState> shown_state(const FloorCounts& counts, BayState so_far) 
   if (!is_taken && counts.free >= least_known(counts, BayState::kEmpty)) return BayState::kEmpty;
   if (!is_taken || counts.known() < least_known(counts, BayState::kPartly)) return std::nullopt;
   const double taken = share_of(counts.taken + counts.shadowed, counts);
-  const bool is_full = so_far == BayState::kFull;
+  const bool has_another = counts.risen >= kRisen;
+  const bool is_full = so_far == BayState::kFull && !has_another;
   if (share_of(counts.free_since, counts) >= (is_full ? kStaysFullFree : kFreeOfFull)) return BayState::kPartly;
-  const bool is_same_load = so_far == BayState::kPartly && counts.risen < kRisen;
-  const double least = is_full ? kStaysFull : is_same_load ? kFullAfterAll : kFull;
+  const bool is_doubtful = so_far == BayState::kPartly ? !has_another : so_far == BayState::kFull;
+  const double least = is_full ? kStaysFull : is_doubtful ? kFullAfterAll : kFull;
   return taken >= least ? std::optional{BayState::kFull} : std::nullopt;
 }
 

@@ -126,11 +126,13 @@ void Bays::judge(std::size_t bay, Timestamp now, std::vector<BayEvent>& events) 
       (watch.candidate_looks < kLeastLooks || seconds(now - watch.candidate_since) < lasts_s(watch.candidate)))
     return;
   const BayState before = status.state;
-  if (is_new && watch.candidate != BayState::kUnknown) watch.floor.take_as_told();
   if (is_new) status = {.state = watch.candidate, .seen = status.seen, .since = watch.candidate_since};
   if (shown) {
+    // What is full stays so by its faces: those that it shows from another side are of the same load.
+    if (is_new || status.state == BayState::kFull) watch.floor.take_as_told();
     const std::uint32_t seen_ds = watch.floor.seen_since_ds(now_ds, kWindow_ds, least_known(counts, status.state));
-    const Timestamp looked_at = now - duration_from_seconds(0.1 * (now_ds - seen_ds));
+    const std::uint32_t body_ds = status.state == BayState::kEmpty ? now_ds : watch.floor.body_seen_ds();
+    const Timestamp looked_at = now - duration_from_seconds(0.1 * (now_ds - std::min(seen_ds, body_ds)));
     const Timestamp seen = std::max(looked_at, status.since.value_or(looked_at));  // before that it was another state
     status.seen = is_new || !status.seen ? seen : std::max(*status.seen, seen);
     status.share = taken_share(counts);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/principal_axes.hpp"
+
 namespace deltamap::mapping::bays {
 namespace {
 
@@ -20,16 +22,9 @@ double roughness_m(std::span<const Point2> points) {
   Point2 mean{0.0, 0.0};
   for (const Point2& point : points) mean += point;
   mean /= static_cast<double>(points.size());
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
-  for (const Point2& point : points) {
-    const Point2 off = point - mean;
-    xx += off.x() * off.x();
-    xy += off.x() * off.y();
-    yy += off.y() * off.y();
-  }
-  const double least = 0.5 * (xx + yy) - std::hypot(0.5 * (xx - yy), xy);
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Point2& point : points) scatter += (point - mean) * (point - mean).transpose();
+  const double least = principal_axes(scatter).values[0];
   return std::sqrt(std::max(0.0, least) / static_cast<double>(points.size() - 2));
 }
 

@@ -105,6 +105,32 @@ TEST_F(BayFloorTest, ABodyThatIsSeenThroughAtItsEdgeKeepsItsShadow) {
   EXPECT_GT(counts(floor).shadowed, 0.8 * shadowed);
 }
 
+TEST_F(BayFloorTest, AFaceOnTheFarRimThatHasGoneIsSeenThrough) {
+  const Pose2 behind{9.2, 14.4, radians(-90.0)};
+  BayFloor floor{square(kBay, kSide_m)};
+  rebuild({{kBay, {2.4, 2.4}}});
+  see(floor, kBefore, 12);  // its front lies on the rim
+  ASSERT_TRUE(counts(floor).body);
+  rebuild({});
+  see(floor, behind, 12);
+  EXPECT_FALSE(counts(floor).body);
+  rebuild({{kBay, {2.4, 2.4}}});
+  see(floor, kBefore, 12);
+  EXPECT_GT(counts(floor).shadowed, 0.9 * counts(floor).cells) << "behind a front that is a new one";
+}
+
+TEST_F(BayFloorTest, ABodyWasSeenWhenABeamLastEndedInIt) {
+  BayFloor floor{square(kBay, kSide_m)};
+  EXPECT_EQ(floor.body_seen_ds(), 0u);
+  rebuild({{kBay + Point2{0.6, 1.2}, {1.2, 0.8}}});
+  see(floor, kBefore, 10);
+  const std::uint32_t seen_ds = time_ds;
+  rebuild({{{6.0, 5.0}, {8.0, 1.0}}});  // covers the bay
+  see(floor, kBefore, 5);
+  ASSERT_TRUE(counts(floor).body);
+  EXPECT_EQ(floor.body_seen_ds(), seen_ds);
+}
+
 TEST_F(BayFloorTest, WhatLiesBehindANewFaceIsFreeNoLonger) {
   BayFloor floor{square(kBay, kSide_m)};
   see(floor, kBefore, 5);

@@ -34,6 +34,15 @@ TEST(BayVerdict, OnlyAnotherLoadFillsAtOnceWhatWasPartlyFull) {
   EXPECT_EQ(shown_state(shadow, BayState::kPartly), BayState::kFull);
 }
 
+TEST(BayVerdict, AnotherLoadInAFullBayIsJudgedByWhatItShows) {
+  FloorCounts shadow{.cells = 100, .free = 12, .free_since = 12, .taken = 10, .shadowed = 70, .body = true};
+  EXPECT_EQ(shown_state(shadow, BayState::kFull), BayState::kFull);
+  shadow.risen = 6;
+  EXPECT_EQ(shown_state(shadow, BayState::kFull), BayState::kPartly);
+  shadow.free = shadow.free_since = 5;
+  EXPECT_EQ(shown_state(shadow, BayState::kFull), std::nullopt) << "its shadow may be long";
+}
+
 TEST(BayVerdict, FloorThatWasFreeBeforeTheLoadCameDoesNotTellHowMuchItTakes) {
   const FloorCounts before{.cells = 100, .free = 12, .free_since = 0, .taken = 10, .shadowed = 65, .body = true};
   EXPECT_EQ(shown_state(before, BayState::kUnknown), std::nullopt);
