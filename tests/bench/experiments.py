@@ -107,7 +107,7 @@ A yard that each seed draws: 24 bays of 2.4 m × 2.4 m in three rows, each empty
 comes or goes in a bay farther than 11 m. A bay is *in view* where 0.6 of the beams that lead to it, within 10 m, reach it; seconds count
 from its change on, also over several visits. *Right*: empty, partly and full as it is; a bay that is still unknown is not right.
 *Precision* leaves out the unknown, *recall* does not. *Ten people* walk and stand (2 to 20 s) in aisles and bays for 6.25 h a seed;
-where loads and others shut them in they stay in one bay for hours, beside or half inside each other. Nothing else changes; the robot stands at another place every 90 s, its pose off by 2 cm and 0.2°. A *false flip* is any change of a state.
+they come in along an aisle, and who is shut in between loads walks to another corner of the beat. Nothing else changes; the robot stands at another place every 90 s, its pose off by 2 cm and 0.2°. A *false flip* is any change of a state.
 """
 
 ZONES = """# Zones: is nothing written, and is the pose as good?
