@@ -160,7 +160,7 @@ std::optional<Pushed> pushed_body(const Outline& came, const Outline& gone, cons
   if (!may_be) return std::nullopt;
   const Pose2 axes = map_from_axes(came.length_m >= gone.length_m ? came : gone);
   for (const std::size_t way : {1U, 0U}) {
-    const auto pushed = pushed_along({span_of(came, axes), span_of(gone, axes), way}, axes, map);
+    auto pushed = pushed_along({span_of(came, axes), span_of(gone, axes), way}, axes, map);
     if (pushed) return pushed;
   }
   return std::nullopt;
