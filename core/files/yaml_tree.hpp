@@ -2,9 +2,12 @@
 // YAML that people write: read whole, and its mistakes in words for whoever wrote it.
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
 #include <string>
+
+namespace YAML {
+class Exception;
+class Node;
+}  // namespace YAML
 
 namespace deltamap {
 

@@ -86,7 +86,8 @@ Written by `./dev experiments --only things`, or from what `deltamap-lab things`
 Containers come, go and are pushed aside in simulated worlds; what is told of them is held against what the fork-lift did. A change
 counts once a face of it was in view for 10 s, also where a later one, or one beside it, touched its place before more was seen.
 It does not count where nobody could tell it from what was there before: of a container that came and went unseen, and of one that was put
-where another had gone unseen, not a single look shows a difference.
+where another had gone unseen, not a single look shows a difference. *Seen all around*: of those, where each face of the container that
+could be seen from the robot's floor was in view for 3 s before its place, or one beside it, changed again.
 An event is what was told of a thing until it was told to be of another kind, or moved on. *Right*: the kind, and the middle of what is told lies on
 the container's own floor. Figures of size are of those. In `pushes` containers stand side by side in rows and are pushed by less
 than a metre: where the back is not seen nobody can tell a move from a body put before the row. In `racks` nothing changes.

@@ -2,6 +2,7 @@
 #include "core/files/yaml_tree.hpp"
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 namespace deltamap {
 namespace {
