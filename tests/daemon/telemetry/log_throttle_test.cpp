@@ -58,10 +58,10 @@ TEST(LogThrottle, WritesAtOnceWhatComesAgainAfterAMinute) {
 }
 
 TEST(LogThrottle, HoldsNothingBackThatStandsForItself) {
-  for (const char* line : {"map changed: revision=7 phase=3", "map unchanged: phase=3 reason=too few scans",
-                           "ctl: pause", "reload: 2 keys wait for a restart",
-                           "thing 7: body of 2.4 × 1.2 m left 3.00, 4.00", "bay B4: empty, was full",
-                           "incident 20261130T030012Z-lost: kept"}) {
+  for (const char* line :
+       {"map changed: revision=7 phase=3", "map unchanged: phase=3 reason=too few scans", "ctl: pause",
+        "reload: 2 keys wait for a restart", "thing 7: body of 2.4 × 1.2 m left 3.00, 4.00", "bay B4: empty, was full",
+        "incident 20261130T030012Z-lost: kept"}) {
     LogThrottle throttle;
     for (int i = 0; i < 5; ++i) EXPECT_TRUE(throttle.take({LogLevel::kInfo, line}, at(i))) << line;
   }
