@@ -28,26 +28,37 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kMeanings
     {"unknown token", "a character that begins no value: put the value into quotes"},
 }};
 
-/// Notes where a document begins, and forgets what is in it.
+/// Notes where a document begins and whether there is anything in it.
 class BeginOfDocument : public YAML::EventHandler {
  public:
-  void OnDocumentStart(const YAML::Mark& mark) override { mark_ = mark; }
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    mark_ = mark;
+    is_empty_ = true;
+  }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
-  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override { is_empty_ = false; }
   void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                const std::string& /*value*/) override {}
+                const std::string& /*value*/) override {
+    is_empty_ = false;
+  }
   void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                       YAML::EmitterStyle::value /*style*/) override {}
+                       YAML::EmitterStyle::value /*style*/) override {
+    is_empty_ = false;
+  }
   void OnSequenceEnd() override {}
   void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                  YAML::EmitterStyle::value /*style*/) override {}
+                  YAML::EmitterStyle::value /*style*/) override {
+    is_empty_ = false;
+  }
   void OnMapEnd() override {}
 
   [[nodiscard]] YAML::Mark mark() const { return mark_; }
+  [[nodiscard]] bool is_empty() const { return is_empty_; }
 
  private:
   YAML::Mark mark_;
+  bool is_empty_ = true;
 };
 
 }  // namespace
@@ -56,8 +67,10 @@ YAML::Node only_yaml_tree(const std::string& text) {
   std::istringstream bytes(text);
   YAML::Parser parser(bytes);  // not YAML::LoadAll: where a sign is out of place it never ends
   BeginOfDocument begin;
-  if (parser.HandleNextDocument(begin) && parser.HandleNextDocument(begin))
-    throw YAML::ParserException(begin.mark(), kBelongsToNothing.data());
+  bool is_first = true;
+  for (; parser.HandleNextDocument(begin); is_first = false) {
+    if (!is_first && !begin.is_empty()) throw YAML::ParserException(begin.mark(), kBelongsToNothing.data());
+  }
   return YAML::Load(text);
 }
 

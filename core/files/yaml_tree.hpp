@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace YAML {
+namespace YAML {  // NOLINT(readability-identifier-naming): theirs
 class Exception;
 class Node;
 }  // namespace YAML

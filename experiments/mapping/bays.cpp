@@ -320,33 +320,33 @@ TextTable table_of_part(const std::string& title, const std::vector<const Outcom
 }
 
 void add_seen(Report& report, const std::vector<const Outcome*>& seen) {
-  constexpr Ratio soon{"right_3s", "seen_3s"};
-  constexpr Ratio surely{"right_10s", "seen_10s"};
+  constexpr Ratio kSoon{"right_3s", "seen_3s"};
+  constexpr Ratio kSurely{"right_10s", "seen_10s"};
   const std::vector<Figure> figures{
       sum_of_runs("loads that were in view for 3 s after they had changed", seen, "seen_3s"),
-      ratio_of_runs("state right after 3 s of view", seen, soon, Target{.least = 0.97}),
+      ratio_of_runs("state right after 3 s of view", seen, kSoon, Target{.least = 0.97}),
       ratio_of_runs("precision after 10 s of view", seen, {"right_10s", "told_10s"}, Target{.least = 0.99}),
-      ratio_of_runs("recall after 10 s of view", seen, surely, Target{.least = 0.99}),
+      ratio_of_runs("recall after 10 s of view", seen, kSurely, Target{.least = 0.99}),
       ratio_of_runs("states, each second of each bay, that were not so when they say they were seen", seen,
                     {"not_so_when_seen", "states"}, Target{.most = 0.0}),
       sum_of_runs("states of bays at which nobody has looked", seen, "never_looked", Target{.most = 0.0})};
   report.figures.insert(report.figures.end(), figures.begin(), figures.end());
   report.charts.push_back(
-      ratios_in_order("states that are right, share", {{"after 3 s of view", soon}, {"after 10 s", surely}}, seen));
+      ratios_in_order("states that are right, share", {{"after 3 s of view", kSoon}, {"after 10 s", kSurely}}, seen));
   report.tables.push_back(table_of_part(
       "Loads that come and go", seen,
       std::array{"seen_3s", "right_3s", "seen_10s", "told_10s", "right_10s", "states", "not_so_when_seen"}));
 }
 
 void add_people(Report& report, const std::vector<const Outcome*>& people) {
-  constexpr Ratio flips{"flips", "bay_hours", 3000.0};
+  constexpr Ratio kFlips{"flips", "bay_hours", 3000.0};
   const std::vector<Figure> figures{sum_of_runs("bay-hours among ten people", people, "bay_hours"),
                                     sum_of_runs("of those in view", people, "in_view_hours"),
-                                    ratio_of_runs("false flips in 3000 bay-hours", people, flips, Target{.most = 3.0}),
+                                    ratio_of_runs("false flips in 3000 bay-hours", people, kFlips, Target{.most = 3.0}),
                                     sum_of_runs("first states that were wrong", people, "wrong_first"),
                                     mean_of_runs("processor a scan, mean", people, "scan_cpu_ms", {}, "ms")};
   report.figures.insert(report.figures.end(), figures.begin(), figures.end());
-  report.charts.push_back(ratios_in_order("false flips in 3000 bay-hours", {{"flips", flips}}, people));
+  report.charts.push_back(ratios_in_order("false flips in 3000 bay-hours", {{"flips", kFlips}}, people));
   report.tables.push_back(
       table_of_part("Ten people", people, std::array{"bay_hours", "in_view_hours", "flips", "wrong_first"}));
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/grid/grid_ray.hpp"
+#include "core/grid/near_occupied.hpp"
 #include "mapping/things/assumed.hpp"
 #include "mapping/things/outline_fit.hpp"
 #include "mapping/things/pushed.hpp"
@@ -79,10 +80,20 @@ BodyCells cells_of(const Body& body, Side side, const OccupancyGrid& map) {
   return cells;
 }
 
-std::size_t faces_on(const BodyCells& cells, const Outline& outline) {
-  return static_cast<std::size_t>(std::count_if(cells.faces.begin(), cells.faces.end(), [&](const Point2& face) {
-    return is_inside(outline, face, cells.resolution_m);
-  }));
+/// Places, a cell apart, on the sides that were seen, at which a surface lies.
+std::size_t surface_on_seen_sides(const Outline& at, const OccupancyGrid& map) {
+  const std::array<Point2, 4> ends = corners(at);
+  std::size_t places = 0;
+  for (std::size_t side = 0; side < ends.size(); ++side) {
+    if (!at.seen[side]) continue;
+    const Point2 along = ends[(side + 1) % ends.size()] - ends[side];
+    const int steps = static_cast<int>(along.norm() / map.resolution_m());
+    for (int step = 1; step < steps; ++step) {
+      const Cell cell = map.geometry().cell_at(ends[side] + along * (static_cast<double>(step) / steps));
+      places += has_occupied_within(map, cell, 1) ? 1 : 0;
+    }
+  }
+  return places;
 }
 
 bool is_same_size(const Outline& a, const Outline& b, double tolerance_m) {
@@ -142,7 +153,8 @@ void leave(Body& body, const ChangedMap& step) {
 
 void judge_standing(Body& body, const ChangedMap& step, const ThingsParams& params) {
   const BodyCells cells = cells_of(body, Side::kCome, step.map);
-  const std::size_t faces = body.is_pushed_back && body.thing.at ? faces_on(cells, *body.thing.at) : cells.faces.size();
+  const std::size_t faces =
+      body.is_pushed_back && body.thing.at ? surface_on_seen_sides(*body.thing.at, step.map) : cells.faces.size();
   const std::size_t most = std::max(body.most_faces_come, faces);
   body.most_faces_come = most;
   if (static_cast<double>(faces) < kLeftShare * static_cast<double>(most)) {
@@ -260,17 +272,29 @@ void judge(Body& body, const ChangedMap& step, const ThingsParams& params) {
   if (body.thing.revisions.size() > Thing::kMostRevisions) body.thing.revisions.erase(body.thing.revisions.begin());
 }
 
-void push_back_by(const ChangedMap& step, Body& body, double one_look_s) {
-  Thing& thing = body.thing;
+std::optional<Outline> pushed_back_to(const ChangedMap& step, const Body& body, double one_look_s) {
+  const Thing& thing = body.thing;
   const bool has_just_left = body.told && thing.kind == ThingKind::kGone && body.most_faces_come > 0 && thing.from &&
                              !thing.at && seconds(step.time - body.grown) <= one_look_s;
-  if (!has_just_left || step.takes_back || !changes_within(*thing.from, step)) return;
-  thing.at = pushed_back(*thing.from, step.map);
-  if (!thing.at) return;
-  thing.kind = ThingKind::kMoved;
-  body.most_faces_come = faces_on(cells_of(body, Side::kCome, step.map), *thing.at);
+  if (!has_just_left || step.takes_back || !changes_within(*thing.from, step)) return std::nullopt;
+  return pushed_back(*thing.from, step.map);
+}
+
+void push_back(Body& body, const Outline& at, const OccupancyGrid& map) {
+  body.thing.at = at;
+  body.thing.kind = ThingKind::kMoved;
+  body.most_faces_come = surface_on_seen_sides(at, map);
   body.is_pushed = body.is_pushed_back = true;
   body.is_touched = true;
+}
+
+std::size_t faces_within(const Body& body, const Outline& outline, const OccupancyGrid& map) {
+  std::size_t faces = 0;
+  body.come.visit([&](Cell cell, CellState) {
+    const bool is_in = map.at(cell) == CellState::kOccupied && is_inside(outline, map.geometry().centre_of(cell), 0.0);
+    faces += is_in ? 1 : 0;
+  });
+  return faces;
 }
 
 void contradict(Body& body) {

@@ -77,8 +77,12 @@ void own(Body& body, std::span<const CellChange> cells, Side side);
 void judge(Body& body, const ChangedMap& step, const ThingsParams& params);
 
 /// What has just left its place, and proves to stand deeper by less than its depth, was pushed back: its new front
-/// shows how far.
-void push_back_by(const ChangedMap& step, Body& body, double one_look_s);
+/// shows how far, if that is no other body's. None: nothing shows.
+[[nodiscard]] std::optional<Outline> pushed_back_to(const ChangedMap& step, const Body& body, double one_look_s);
+void push_back(Body& body, const Outline& at, const OccupancyGrid& map);
+
+/// Cells within the outline at which the body's surface stands.
+[[nodiscard]] std::size_t faces_within(const Body& body, const Outline& outline, const OccupancyGrid& map);
 
 /// Where the revision finds cells free inside what is assumed of it, nothing is assumed of it any more while it stands.
 void contradict_by(const ChangedMap& step, Body& body);

@@ -93,7 +93,7 @@ std::string_view name_of(ThingKind kind) {
 }
 
 std::string words_of(const Thing& thing) {
-  const std::string body = body_text(thing.outline());
+  std::string body = body_text(thing.outline());
   switch (thing.kind) {
     case ThingKind::kAppeared:
       return body + " appeared at " + place_text(*thing.at);

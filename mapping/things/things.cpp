@@ -219,11 +219,18 @@ void Things::add_insides(const GridGeometry& geometry, const Cells& changes, Sid
   }
 }
 
+bool Things::is_taken_by_another(const Body& body, const Outline& at, const OccupancyGrid& map) const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& other) {
+    return &other != &body && faces_within(other, at, map) >= static_cast<std::size_t>(params_.least_cells);
+  });
+}
+
 std::vector<ThingEvent> Things::told(const Step& step) {
   for (Body& body : bodies_) {
     contradict_by(step.now, body);
     if (body.is_touched) judge(body, step.now, params_);
-    push_back_by(step.now, body, params_.one_look_s);
+    const auto at = pushed_back_to(step.now, body, params_.one_look_s);
+    if (at && !is_taken_by_another(body, *at, step.now.map)) push_back(body, *at, step.now.map);
   }
   join_faces(step.now);
   if (!step.now.takes_back) {  // else nothing new is said of the world

@@ -58,6 +58,8 @@ class Things {
                                               Side side) const;
   /// The body that a cluster belongs to; bodies that it joins become one. Null: to none that is followed.
   [[nodiscard]] Body* body_of(const Step& step, const Cells& cluster, Side side);
+  /// Another body's surface has come within the outline.
+  [[nodiscard]] bool is_taken_by_another(const Body& body, const Outline& at, const OccupancyGrid& map) const;
   [[nodiscard]] std::vector<ThingEvent> told(const Step& step);
   /// Faces of one body that were seen one after the other.
   void join_faces(const ChangedMap& now);

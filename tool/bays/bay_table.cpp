@@ -37,25 +37,34 @@ struct TableRow {
   }
 };
 
-std::vector<std::string> cells_of(const std::string& line, char separator) {
-  std::vector<std::string> cells(1);
-  bool is_quoted = false;
+struct TableCells {
+  std::vector<std::string> cells;
+  bool is_open = false;  // the quotes of the last one are not closed
+};
+
+/// A quote at the beginning of a cell opens it (RFC 4180, 2.5); elsewhere it is a character: Shelf 19" left. `is_open`:
+/// the line goes on in quotes.
+TableCells cells_of(const std::string& line, char separator, bool is_open = false) {
+  TableCells found{std::vector<std::string>(1), is_open};
+  bool was_quoted = is_open;  // this cell
   for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"' && is_quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back() += line[i++];
-    } else if (line[i] == '"') {
-      is_quoted = !is_quoted;
-    } else if (line[i] == separator && !is_quoted) {
-      cells.emplace_back();
+    std::string& cell = found.cells.back();
+    if (found.is_open && line[i] == '"' && i + 1 < line.size() && line[i + 1] == '"') {
+      cell += line[i++];
+    } else if (found.is_open && line[i] == '"') {
+      found.is_open = false;
+    } else if (!found.is_open && line[i] == '"' && !was_quoted && trimmed(cell).empty()) {
+      found.is_open = was_quoted = true;
+    } else if (!found.is_open && line[i] == separator) {
+      found.cells.emplace_back();
+      was_quoted = false;
     } else {
-      cells.back() += line[i] == '\n' ? ' ' : line[i];
+      cell += line[i] == '\n' ? ' ' : line[i];
     }
   }
-  for (std::string& cell : cells) cell = trimmed(cell);
-  return cells;
+  for (std::string& cell : found.cells) cell = trimmed(cell);
+  return found;
 }
-
-bool has_odd_quotes(const std::string& text) { return std::count(text.begin(), text.end(), '"') % 2 == 1; }
 
 struct TableLine {
   std::size_t number;  // of the first, from 1
@@ -63,7 +72,7 @@ struct TableLine {
 };
 
 /// A cell in quotes may hold line breaks (RFC 4180, 2.6): such lines belong together.
-std::vector<TableLine> lines_in(const std::string& text) {
+std::vector<TableLine> lines_in(const std::string& text, char separator) {
   std::vector<TableLine> lines;
   std::size_t number = 1;
   bool is_quoted = false;
@@ -76,7 +85,7 @@ std::vector<TableLine> lines_in(const std::string& text) {
     } else {
       lines.push_back({number, line});
     }
-    is_quoted = is_quoted != has_odd_quotes(line);
+    is_quoted = cells_of(line, separator, is_quoted).is_open;
     from = end + 1;
   }
   return lines;
@@ -85,7 +94,7 @@ std::vector<TableLine> lines_in(const std::string& text) {
 /// "1 2; 3 2; 3 4"
 Polygon polygon_of(const TableRow& row, const std::string& told) {
   Polygon polygon;
-  for (const std::string& corner : cells_of(told, ';')) {
+  for (const std::string& corner : cells_of(told, ';').cells) {
     const std::size_t gap = corner.find(' ');
     const auto x_m = finite_number(corner.substr(0, gap));
     const auto y_m = gap == std::string::npos ? std::nullopt : finite_number(trimmed(corner.substr(gap)));
@@ -125,12 +134,11 @@ Bay bay_of(const TableRow& row, const std::optional<BaySize>& size) {
 ImportedBays bays_of_csv(const std::string& text, const std::string& name, const std::optional<BaySize>& size) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   daemon::require_utf8(text, name);
-  std::vector<TableLine> lines = lines_in(text);
-  if (lines.empty()) throw std::runtime_error(name + ": is empty");
-  std::string& head = lines[0].text;
-  if (head.starts_with(kByteOrderMark)) head.erase(0, kByteOrderMark.size());
-  const char separator = head.find(';') == std::string::npos ? ',' : ';';
-  const std::vector<std::string> columns = cells_of(head, separator);
+  const std::string table = text.substr(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+  if (table.empty()) throw std::runtime_error(name + ": is empty");
+  const char separator = table.substr(0, table.find('\n')).find(';') == std::string::npos ? ',' : ';';
+  const std::vector<TableLine> lines = lines_in(table, separator);
+  const std::vector<std::string> columns = cells_of(lines[0].text, separator).cells;
   for (const std::string& column : columns) {
     if (std::find(kBayColumns.begin(), kBayColumns.end(), column) == kBayColumns.end())
       TableRow{name + ": line 1", {}}.refuse("nothing is called '" + column +
@@ -142,11 +150,11 @@ ImportedBays bays_of_csv(const std::string& text, const std::string& name, const
   ImportedBays bays;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     if (trimmed(lines[i].text).empty()) continue;
-    const std::vector<std::string> cells = cells_of(lines[i].text, separator);
+    const auto [cells, is_open] = cells_of(lines[i].text, separator);
     TableRow row{name + ": line " + std::to_string(lines[i].number), {}};
+    if (is_open) row.refuse("has a quote that is not closed");
     if (cells.size() != columns.size())
-      row.refuse("has " + std::to_string(cells.size()) + " cells, the first line " + std::to_string(columns.size()) +
-                 (has_odd_quotes(lines[i].text) ? ": is a quote not closed?" : ""));
+      row.refuse("has " + std::to_string(cells.size()) + " cells, the first line " + std::to_string(columns.size()));
     for (std::size_t c = 0; c < columns.size(); ++c) row.cells[columns[c]] = cells[c];
     bays.bays.push_back(bay_of(row, size));
   }

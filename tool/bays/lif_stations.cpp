@@ -56,6 +56,12 @@ std::string text_in(const LifJson& json, const char* key) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
+/// Of a name that other programs write as a number, too.
+std::string name_in(const LifJson& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number() ? found->dump() : text_in(json, key);
+}
+
 std::optional<double> number_at(const LifJson& json, const char* key) {
   const auto found = json.find(key);
   const bool is_number = found != json.end() && found->is_number() && std::isfinite(found->get<double>());
@@ -78,7 +84,8 @@ void add_station(const LifJson& station, const std::string& name, const std::str
   if (!x_m || !y_m) refuse_lif(name, place + "/stationPosition", "needs the numbers x and y");
   if (!size) refuse_lif(name, place, "LIF has no size of stations: give --size ALONGxACROSS in metres");
   const auto theta_rad = number_at(*position, "theta");
-  if (position->contains("theta") && !theta_rad) refuse_lif(name, place + "/stationPosition/theta", "must be a number");
+  if (position->contains("theta") && !position->at("theta").is_null() && !theta_rad)
+    refuse_lif(name, place + "/stationPosition/theta", "must be a number");
   const Pose2 map_from_bay{*x_m, *y_m, wrapped_angle(theta_rad.value_or(0.0))};
   bays.bays.push_back({.id = id,
                        .name = text_in(station, "stationName"),
@@ -102,9 +109,13 @@ std::vector<LifLayout> layouts_in(const LifJson& lif, const std::string& name) {
     const std::string place = "/layouts/" + std::to_string(i);
     const LifJson& stations = list_in(layouts[i], "stations", name, place);
     if (stations.empty()) continue;
-    found.push_back({place, text_in(layouts[i], "layoutId"), text_in(layouts[i], "layoutLevelId"), &stations});
+    found.push_back({place, name_in(layouts[i], "layoutId"), name_in(layouts[i], "layoutLevelId"), &stations});
   }
   return found;
+}
+
+bool is_wanted(const LifLayout& layout, const std::vector<std::string>& wanted) {
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), layout.id) != wanted.end();
 }
 
 void require_layouts(const std::vector<LifLayout>& all, const std::vector<std::string>& wanted,
@@ -118,9 +129,13 @@ void require_layouts(const std::vector<LifLayout>& all, const std::vector<std::s
     if (std::none_of(all.begin(), all.end(), [&](const LifLayout& layout) { return layout.id == id; }))
       refuse_lif(name, "/layouts", "has no '" + id + "' with stations: " + (known.empty() ? "none has any" : known));
   }
-  const auto is_elsewhere = [&](const LifLayout& layout) { return layout.level != all.front().level; };
-  if (wanted.empty() && std::any_of(all.begin(), all.end(), is_elsewhere))
-    refuse_lif(name, "/layouts", "are of several levels, and a map is one: give --layout ID of " + known);
+  const LifLayout* first = nullptr;
+  for (const LifLayout& layout : all) {
+    if (!is_wanted(layout, wanted)) continue;
+    if (first == nullptr) first = &layout;
+    if (layout.level != first->level)
+      refuse_lif(name, "/layouts", "are of several levels, and a map is one: give --layout ID of " + known);
+  }
 }
 
 }  // namespace
@@ -133,7 +148,7 @@ ImportedBays bays_of_lif(const std::string& text, const std::string& name, const
   require_layouts(all, layouts, name);
   ImportedBays bays;
   for (const LifLayout& layout : all) {
-    if (!layouts.empty() && std::find(layouts.begin(), layouts.end(), layout.id) == layouts.end()) continue;
+    if (!is_wanted(layout, layouts)) continue;
     for (std::size_t j = 0; j < layout.stations->size(); ++j)
       add_station((*layout.stations)[j], name, layout.place + "/stations/" + std::to_string(j), size, bays);
   }

@@ -9,11 +9,11 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <iostream>
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/counted.hpp"
 #include "core/files/scratch_folder.hpp"
@@ -40,10 +40,10 @@ class MappedFile {
     }
     const int error = errno;
     if (descriptor >= 0) ::close(descriptor);
-    if (!is_open) throw std::runtime_error(file.string() + ": " + std::strerror(error));
+    if (!is_open) throw std::runtime_error(file.string() + ": " + std::generic_category().message(error));
     if (!S_ISREG(about.st_mode)) throw std::runtime_error(file.string() + ": is no file");
     if (about.st_size == 0) throw std::runtime_error(file.string() + ": is empty");
-    if (at_ == nullptr) throw std::runtime_error(file.string() + ": " + std::strerror(error));
+    if (at_ == nullptr) throw std::runtime_error(file.string() + ": " + std::generic_category().message(error));
   }
   ~MappedFile() {
     if (at_ != nullptr) ::munmap(at_, size_);

@@ -217,7 +217,8 @@ RosScan scan_of_json(const Json& json) {
   RosScan scan;
   scan.time = time_in(json);
   scan.frame = frame_in(json);
-  if (const Json* pose = member(json, {"pose"})) scan.frame_from_scan = pose_in(*pose);
+  const Json* pose = member(json, {"pose"});
+  if (pose != nullptr && pose->is_object() && !pose->empty()) scan.frame_from_scan = pose_in(*pose);
   scan.first_bearing_rad = number_in(json, {"angle_min", "start_angle"});
   const Json& ranges = needed(json, {"ranges"});
   if (!ranges.is_array()) throw std::runtime_error("its \"ranges\" are no list");

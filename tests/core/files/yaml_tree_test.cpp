@@ -22,6 +22,8 @@ std::string told(const std::string& text) {
 TEST(YamlTree, ATextIsReadWhole) {
   EXPECT_EQ(only_yaml_tree("a: 1\nb: 2\n")["b"].as<int>(), 2);
   EXPECT_EQ(only_yaml_tree("---\na: 1\n...\n")["a"].as<int>(), 1);
+  EXPECT_EQ(only_yaml_tree("a: 1\n---\n")["a"].as<int>(), 1) << "nothing stands behind it";
+  EXPECT_EQ(only_yaml_tree("a: 1\n---\n# end\n...\n")["a"].as<int>(), 1);
   EXPECT_TRUE(only_yaml_tree("").IsNull());
   EXPECT_TRUE(only_yaml_tree("# nothing yet\n").IsNull());
 }

@@ -152,6 +152,14 @@ TEST_F(PushedBack, IsOneThingThatMoved) {
   EXPECT_NE(site.things.all()[0].kind, ThingKind::kMoved) << "it has left the bay";
 }
 
+TEST_F(PushedBack, AnotherOnFloorThatWasSeenFreeIsAnother) {
+  site.clear(kInBay).revision(100.0);
+  site.fill(kDeeper, CellState::kUnknown).north(kDeeper).revision(140.0);
+  ASSERT_EQ(site.things.all().size(), 2u);
+  EXPECT_EQ(site.things.all()[0].kind, ThingKind::kGone);
+  EXPECT_EQ(site.things.all()[1].kind, ThingKind::kAppeared);
+}
+
 TEST_F(PushedBody, ThatIsPushedBackHasMovedOn) {
   site.box(kOld).begin_with_what_is_drawn();
   site.fill({4.0, 3.5, 6.4, 3.95}, CellState::kUnknown).south(kNew);
@@ -164,6 +172,8 @@ TEST_F(PushedBody, ThatIsPushedBackHasMovedOn) {
   EXPECT_EQ(told[0].thing.kind, ThingKind::kMoved);
   expect_outline(*told[0].thing.from, kNew);
   expect_outline(*told[0].thing.at, kOld);
+  site.clear(kOld).revision(900.0);
+  EXPECT_FALSE(site.things.all()[0].at) << "it has left for good";
 }
 
 }  // namespace

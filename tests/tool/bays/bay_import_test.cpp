@@ -98,6 +98,14 @@ TEST(BayImport, StationsOfAnotherFloorAreNeverReadAsOnes) {
   EXPECT_EQ(lif_complaint(lif),
             "site.lif: /layouts: are of several levels, and a map is one: give --layout ID of 'L1' of level '0', 'L2' "
             "of level '1'");
+  const std::string numbered = lif_of(
+      R"({"layoutId": 1, "layoutLevelId": 0, "stations": [{"stationId": "A"}]},
+         {"layoutId": 2, "layoutLevelId": 1, "stations": [{"stationId": "B"}]})");
+  EXPECT_EQ(lif_complaint(numbered),
+            "site.lif: /layouts: are of several levels, and a map is one: give --layout ID of '1' of level '0', '2' of "
+            "level '1'");
+  const std::string same = lif_of(layout_of("L", "0", "A") + "," + layout_of("L", "1", "B"));
+  EXPECT_THROW((void)bays_of_lif(same, "site.lif", kSize, {"L"}), std::runtime_error);
   const ImportedBays upper = bays_of_lif(lif, "site.lif", kSize, {"L2"});
   ASSERT_EQ(upper.bays.size(), 1u);
   EXPECT_EQ(upper.bays[0].id, "B");
@@ -137,7 +145,13 @@ TEST(BayImport, ACellInQuotesMayHoldLineBreaks) {
   ASSERT_EQ(bays.bays.size(), 1u);
   EXPECT_EQ(bays.bays[0].name, "Row \"A\" bay 1");
   EXPECT_EQ(csv_complaint("id,name,x_m,y_m\nA,\"open,1,2\nB,,1,2\n"),
-            "bays.csv: line 2: has 2 cells, the first line 4: is a quote not closed?");
+            "bays.csv: line 2: has a quote that is not closed");
+  EXPECT_EQ(csv_complaint("id;x_m;y_m;name\nA;2;3;\"Row A\nB;9;3;Row B\n"),
+            "bays.csv: line 2: has a quote that is not closed");
+  const ImportedBays inches =
+      bays_of_csv("id;x_m;y_m;name\nA;2;3;Shelf 19\" left\nB;9;3;Shelf 19\" right\n", "bays.csv", kSize);
+  ASSERT_EQ(inches.bays.size(), 2u);
+  EXPECT_EQ(inches.bays[0].name, "Shelf 19\" left");
 }
 
 TEST(BayImport, SaysInOneLineWhatIsWrongWithATable) {
