@@ -18,8 +18,9 @@ class ScriptedPorts final : public drivers::port::PlayedPorts {
  public:
   /// Asked before each record, in the io thread; each may be empty.
   struct Brakes {
-    std::function<bool()> is_behind{};    ///< what was played is not worked off yet: waits
-    std::function<bool()> wants_scans{};  ///< somebody still needs scans: the last third of the recording dawdles
+    std::function<bool()> is_behind{};  ///< what was played is not worked off yet: waits
+    std::function<bool()>
+        wants_scans{};  ///< somebody still needs scans: the last third of the recording dawdles, the last sixth more
   };
   /// Waits `pause` after each record.
   ScriptedPorts(const std::filesystem::path& recording, std::chrono::microseconds pause, Brakes brakes)
@@ -32,7 +33,9 @@ class ScriptedPorts final : public drivers::port::PlayedPorts {
   [[nodiscard]] std::chrono::microseconds pause() const {
     constexpr std::chrono::microseconds kDawdling{50'000};
     const bool is_last_third = 3 * script_.read_bytes() > 2 * script_.size_bytes();
-    return is_last_third && brakes_.wants_scans && brakes_.wants_scans() ? std::max(pause_, kDawdling) : pause_;
+    const bool is_last_sixth = 6 * script_.read_bytes() > 5 * script_.size_bytes();
+    if (!is_last_third || !brakes_.wants_scans || !brakes_.wants_scans()) return pause_;
+    return std::max(pause_, is_last_sixth ? 4 * kDawdling : kDawdling);
   }
 
   void play() override {
