@@ -13,6 +13,7 @@
 namespace deltamap {
 namespace {
 
+constexpr int kBeforeTheFirst = -1;  // document
 constexpr std::string_view kBelongsToNothing = "belongs to nothing";  // our own, beside the YAML reader's
 
 /// The YAML reader's words, and what they mean to whoever wrote the file.
@@ -67,9 +68,11 @@ YAML::Node only_yaml_tree(const std::string& text) {
   std::istringstream bytes(text);
   YAML::Parser parser(bytes);  // not YAML::LoadAll: where a sign is out of place it never ends
   BeginOfDocument begin;
-  bool is_first = true;
-  for (; parser.HandleNextDocument(begin); is_first = false) {
-    if (!is_first && !begin.is_empty()) throw YAML::ParserException(begin.mark(), kBelongsToNothing.data());
+  int before = kBeforeTheFirst;
+  for (; parser.HandleNextDocument(begin); before = begin.mark().pos) {
+    const bool stands_still = begin.mark().pos == before;  // at a sign that no value has: the parser steps over none
+    const bool is_another = before != kBeforeTheFirst && !begin.is_empty();
+    if (stands_still || is_another) throw YAML::ParserException(begin.mark(), kBelongsToNothing.data());
   }
   return YAML::Load(text);
 }

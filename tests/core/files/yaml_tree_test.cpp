@@ -43,6 +43,20 @@ TEST(YamlTree, MistakesAreToldInWordsWithALineThatIsThere) {
   EXPECT_EQ(told("a: 1\n? b\n"), "");  // valid, if odd
 }
 
+/// The parser below steps over no sign that begins no value: whoever asks it for the next tree asks forever.
+TEST(YamlTree, EachTextOfAFewSignsIsReadToItsEnd) {
+  const std::string signs = "a:,-?[}\n ";
+  std::string text(4, signs.front());
+  std::size_t refused = 0;
+  for (std::size_t number = 0; number < signs.size() * signs.size() * signs.size() * signs.size(); ++number) {
+    for (std::size_t at = 0, left = number; at < text.size(); ++at, left /= signs.size()) {
+      text[at] = signs[left % signs.size()];
+    }
+    if (!told(text).empty()) ++refused;
+  }
+  EXPECT_GT(refused, 1000u);
+}
+
 TEST(YamlTree, WordsThatNobodyHasExplainedStandAsTheyAre) {
   EXPECT_EQ(meaning_of(YAML::Exception(YAML::Mark::null_mark(), "some new words")), "not YAML: some new words");
 }

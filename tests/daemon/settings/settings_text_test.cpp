@@ -94,8 +94,6 @@ INSTANTIATE_TEST_SUITE_P(
         {"  map: {}\nlaser: {}\n",
          {"f:2:1: not YAML: this belongs to no key: look at the indentation of this line and of those above"}},
         {"map:\n  file: |\n    \"a\n  store: 3\n", {"f:2:9: '|' begins a text of several lines: no key takes one"}},
-        {"map:\n  , x\n",
-         {"f:2:3: not YAML: this belongs to no key: look at the indentation of this line and of those above"}},
         {"laser:\n  port: a\n baud: 9600\n",
          {"f:3:2: not YAML: this belongs to no key: look at the indentation of this line and of those above"}},
         {"map:\n  file: @x\n", {"f:2:9: not YAML: a character that begins no value: put the value into quotes"}},
