@@ -8,7 +8,6 @@
 #include <cctype>
 #include <cmath>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -60,20 +59,6 @@ std::string description_text(const std::filesystem::path& file) {
     return text_of_file(file);
   } catch (const std::runtime_error& error) {
     complain(file, error.what());
-  }
-}
-
-/// One that is open at the end of its line would take the lines below for its text.
-void require_closed_quotes(const std::filesystem::path& file, const std::string& text) {
-  std::istringstream lines(text);
-  int line_number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++line_number;
-    const auto colon = line.find(": ");
-    const auto begin = colon == std::string::npos ? colon : line.find_first_not_of(' ', colon + 1);
-    if (begin == std::string::npos || (line[begin] != '"' && line[begin] != '\'')) continue;
-    if (line.find(line[begin], begin + 1) == std::string::npos)
-      complain(file, "line " + std::to_string(line_number) + ": not YAML: a quote is not closed");
   }
 }
 
@@ -195,7 +180,6 @@ int line_of_key(const YAML::Node& map, const char* key) { return map[key] ? map[
 GridDescription read_grid_description(const std::filesystem::path& file) {
   const std::string text = description_text(file);
   require_description(file, text);
-  require_closed_quotes(file, text);
   const YAML::Node map = tree_of(file, text);
   if (!map.IsMap()) complain(file, "line 1: not a map description (expected 'image', 'resolution', 'origin')");
   require_each_key_once(file, map);

@@ -13,12 +13,14 @@
 namespace deltamap {
 namespace {
 
-constexpr int kBeforeTheFirst = -1;  // document
-constexpr std::string_view kBelongsToNothing = "belongs to nothing";  // our own, beside the YAML reader's
+constexpr int kBeforeTheFirst = -1;                                   // document
+constexpr std::string_view kBelongsToNothing = "belongs to nothing";  // our own two, beside the YAML reader's
+constexpr std::string_view kOpenQuote = "quote not closed";
 
 /// The YAML reader's words, and what they mean to whoever wrote the file.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kMeanings{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kMeanings{{
     {kBelongsToNothing, "this belongs to no key: look at the indentation of this line and of those above"},
+    {kOpenQuote, "a quote is not closed on its line"},
     {"illegal map value", "a ':' is out of place: look at the indentation, or put the value into quotes"},
     {"end of map not found", "the indentation does not fit the lines above"},
     {"end of sequence not found", "the indentation does not fit the lines above"},
@@ -29,9 +31,16 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kMeanings
     {"unknown token", "a character that begins no value: put the value into quotes"},
 }};
 
-/// Notes where a document begins and whether there is anything in it.
-class BeginOfDocument : public YAML::EventHandler {
+constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";  // the parser's places do not count it
+
+/// Notes where a document begins and whether there is anything in it. Refuses quotes that are open at the end of their
+/// line.
+class EventsOfDocument : public YAML::EventHandler {
  public:
+  explicit EventsOfDocument(std::string_view text) : text_{text} {
+    if (text_.starts_with(kUtf8Mark)) text_.remove_prefix(kUtf8Mark.size());
+  }
+
   void OnDocumentStart(const YAML::Mark& mark) override {
     mark_ = mark;
     is_empty_ = true;
@@ -39,9 +48,10 @@ class BeginOfDocument : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
   void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override { is_empty_ = false; }
-  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t /*anchor*/,
                 const std::string& /*value*/) override {
     is_empty_ = false;
+    if (tag == kNotPlain) require_closed_quote(mark);
   }
   void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
                        YAML::EmitterStyle::value /*style*/) override {
@@ -58,16 +68,40 @@ class BeginOfDocument : public YAML::EventHandler {
   [[nodiscard]] bool is_empty() const { return is_empty_; }
 
  private:
+  static constexpr std::string_view kNotPlain = "!";  // the tag of what stands in quotes, or behind | or >
+
+  /// The parser ends a quote that is open at the end of the text there, and says nothing of what it swallowed.
+  void require_closed_quote(const YAML::Mark& mark) const {
+    const std::size_t at =
+        text_.find_first_of("\"'|>\n", static_cast<std::size_t>(mark.pos));  // an anchor may stand before
+    if (at == std::string_view::npos || (text_[at] != '"' && text_[at] != '\'')) return;
+    if (!end_of_quoted(text_.substr(0, text_.find('\n', at)), at)) throw YAML::ParserException(mark, kOpenQuote.data());
+  }
+
+  std::string_view text_;
   YAML::Mark mark_;
   bool is_empty_ = true;
 };
 
 }  // namespace
 
+std::optional<std::size_t> end_of_quoted(std::string_view line, std::size_t opening) {
+  const char quote = line[opening];
+  for (std::size_t at = opening + 1; at < line.size(); ++at) {
+    if (quote == '"' && line[at] == '\\') {
+      ++at;
+    } else if (line[at] == quote) {
+      if (quote == '"' || at + 1 == line.size() || line[at + 1] != '\'') return at + 1;
+      ++at;  // '' is a quote within the text
+    }
+  }
+  return std::nullopt;
+}
+
 YAML::Node only_yaml_tree(const std::string& text) {
   std::istringstream bytes(text);
   YAML::Parser parser(bytes);  // not YAML::LoadAll: where a sign is out of place it never ends
-  BeginOfDocument begin;
+  EventsOfDocument begin(text);
   int before = kBeforeTheFirst;
   for (; parser.HandleNextDocument(begin); before = begin.mark().pos) {
     const bool stands_still = begin.mark().pos == before;  // at a sign that no value has: the parser steps over none

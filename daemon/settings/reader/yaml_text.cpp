@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/files/yaml_tree.hpp"
 #include "daemon/settings/reader/text_character.hpp"
 
 namespace deltamap::daemon {
@@ -24,20 +25,6 @@ bool begins_with_marker(std::string_view line, std::string_view marker) {
 bool has_content(std::string_view line) {
   const auto first = line.find_first_not_of(" \t");
   return first != std::string_view::npos && line[first] != '#';
-}
-
-/// The index behind the closing quote; nullopt where the line has none.
-std::optional<std::size_t> end_of_quoted(std::string_view line, std::size_t opening) {
-  const char quote = line[opening];
-  for (std::size_t at = opening + 1; at < line.size(); ++at) {
-    if (quote == '"' && line[at] == '\\') {
-      ++at;
-    } else if (line[at] == quote) {
-      if (quote == '"' || at + 1 == line.size() || line[at + 1] != '\'') return at + 1;
-      ++at;  // '' is a quote within the text
-    }
-  }
-  return std::nullopt;
 }
 
 std::string hex_of(char byte) {

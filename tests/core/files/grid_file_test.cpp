@@ -143,7 +143,7 @@ TEST(GridFile, NamesLineAndKeyOfAWrongDescription) {
   EXPECT_EQ(told(image + "resolution: 0.1\n"), "key 'origin' is missing");
   EXPECT_EQ(told(image + "resolution: 0.1\norigin: 3\n"), "line 3: 'origin' must be [x, y, yaw]");
   EXPECT_EQ(told(image + image + kKeys), "line 2: 'image' is given twice");
-  EXPECT_EQ(told("image: \"m.pgm\nresolution: 0.1\n"), "line 1: not YAML: a quote is not closed");
+  EXPECT_EQ(told("image: \"m.pgm\nresolution: 0.1\n"), "line 1: not YAML: a quote is not closed on its line");
   EXPECT_EQ(told(image + "origin: [0, 0, 0\n"), "line 2: not YAML: a '[' is not closed");
   EXPECT_EQ(told(image + kKeys + "...\nnegate: 1\n"),
             "line 8: not YAML: this belongs to no key: look at the indentation of this line and of those above");

@@ -34,6 +34,20 @@ TEST(YamlTree, WhatStandsBehindTheFirstTreeIsTold) {
   EXPECT_EQ(told("  a: 1\nb: 2\n"), "line 2: " + kOfNoKey);
 }
 
+/// The parser takes all that follows for the quote's text, to the end, or to the next quote.
+TEST(YamlTree, AQuoteClosesOnItsLine) {
+  const std::string open = ": not YAML: a quote is not closed on its line";
+  EXPECT_EQ(told("a: 1\nb: \"c\nd: 2\n"), "line 2" + open);
+  EXPECT_EQ(told("a: 1\nb: 'c\nd: 2\n"), "line 2" + open);
+  EXPECT_EQ(told("a: [x, 'it''s]\nd: 2\n"), "line 1" + open) << "'' is a quote within the text";
+  EXPECT_EQ(told("a: \"x\\\"\nd: 2\n"), "line 1" + open) << "as is one behind a backslash";
+  EXPECT_EQ(told("l:\n  - a: \"x\n    b: 1\n  - a: \"y\"\n"), "line 2" + open);
+  EXPECT_EQ(told("a: 1\n\"b: 2\nd: 2\n"), "line 2" + open);
+  EXPECT_EQ(told("\xEF\xBB\xBF\"caf\xC3\xA9\": '\xC3\xA9'\nb: \"x\nc: 1\n"), "line 2" + open);
+  EXPECT_EQ(told("a: &name \"x\nc: 1\n"), "line 1" + open);
+  EXPECT_EQ(told("a: &name \"x\"\nb: 'it''s'\nc: \"\\\"\"\nd: |\n  \"x\ne: it's\n"), "");
+}
+
 TEST(YamlTree, MistakesAreToldInWordsWithALineThatIsThere) {
   EXPECT_EQ(told("a: [1, 2\n"), "line 1: not YAML: a '[' is not closed");
   EXPECT_EQ(told("a: {b: 2"), "line 1: not YAML: a '{' is not closed");

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 namespace deltamap::daemon {
 namespace {
 
@@ -27,6 +29,19 @@ TEST(PlaceList, AnOutlineMayRepeatCorners) {
   EXPECT_EQ(places[0].polygon, (Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}}));
   EXPECT_EQ(without_repeated_corners({{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}}).size(), 2u);
   EXPECT_TRUE(without_repeated_corners({}).empty());
+}
+
+TEST(PlaceList, AQuoteThatIsNotClosedSwallowsNoOtherPlace) {
+  const std::string yaml =
+      "zones:\n"
+      "  - {zoneId: a, vertices: [[0, 0], [1, 0], [1, 1]], zoneDescriptor: \"a wall}\n"
+      "  - {zoneId: b, vertices: [[2, 0], [3, 0], [3, 1]], zoneType: BLOCKED}\n";
+  try {
+    (void)places_in(yaml, "zones.yaml", kKeys);
+    FAIL() << "was taken";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "zones.yaml: line 2: not YAML: a quote is not closed on its line");
+  }
 }
 
 TEST(PlaceList, EveryCharacterOfAnIdIsWrittenAsItIs) {
