@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "core/grid/grid_ray.hpp"
-#include "core/grid/near_occupied.hpp"
 #include "mapping/things/assumed.hpp"
 #include "mapping/things/outline_fit.hpp"
 #include "mapping/things/pushed.hpp"
+#include "mapping/things/surface_along.hpp"
 
 namespace deltamap::mapping::things {
 namespace {
@@ -83,17 +83,11 @@ BodyCells cells_of(const Body& body, Side side, const OccupancyGrid& map) {
 /// Places, a cell apart, on the sides that were seen, at which a surface lies.
 std::size_t surface_on_seen_sides(const Outline& at, const OccupancyGrid& map) {
   const std::array<Point2, 4> ends = corners(at);
-  std::size_t places = 0;
+  int places = 0;
   for (std::size_t side = 0; side < ends.size(); ++side) {
-    if (!at.seen[side]) continue;
-    const Point2 along = ends[(side + 1) % ends.size()] - ends[side];
-    const int steps = static_cast<int>(along.norm() / map.resolution_m());
-    for (int step = 1; step < steps; ++step) {
-      const Cell cell = map.geometry().cell_at(ends[side] + along * (static_cast<double>(step) / steps));
-      places += has_occupied_within(map, cell, 1) ? 1 : 0;
-    }
+    if (at.seen[side]) places += surface_along(map, ends[side], ends[(side + 1) % ends.size()]).places;
   }
-  return places;
+  return static_cast<std::size_t>(places);
 }
 
 bool is_same_size(const Outline& a, const Outline& b, double tolerance_m) {

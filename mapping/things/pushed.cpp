@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/grid/near_occupied.hpp"
 #include "mapping/things/span.hpp"
+#include "mapping/things/surface_along.hpp"
 
 namespace deltamap::mapping::things {
 namespace {
@@ -18,7 +18,6 @@ constexpr double kSeenOfIt = 0.5;      // of the longer strip, by the shorter on
 constexpr double kBeside_m = 0.25;     // that the shorter one may reach beyond the longer
 constexpr double kFloorBetween = 0.3;  // share of free cells from which on there is floor between
 constexpr double kLeastPush_m = 0.15;  // less is a correction of its place
-constexpr int kFrontReach = 1;         // cells
 constexpr double kFrontOpen = 0.3;     // of its width, where the surface that is its front now was not seen
 constexpr double kFloorBefore = 0.7;   // share of free cells before that
 constexpr int kBetween = 12;           // samples along and across
@@ -78,16 +77,11 @@ double free_share(const Span& span, const Pose2& map_from_axes, const OccupancyG
 
 /// A surface lies across all of the way, so far along it.
 bool is_front(const Span& body, std::size_t way, double at, const Pose2& map_from_axes, const OccupancyGrid& map) {
-  const std::size_t across = 1 - way;
-  const int steps = std::max(1, static_cast<int>(body.extent(across) / map.resolution_m()));
-  int open = 0;
-  for (int i = 0; i < steps && open <= kFrontOpen * steps; ++i) {
-    Point2 own;
-    own[static_cast<int>(way)] = at;
-    own[static_cast<int>(across)] = body.low[across] + (i + 0.5) / steps * body.extent(across);
-    open += has_occupied_within(map, map.geometry().cell_at(map_from_axes * own), kFrontReach) ? 0 : 1;
-  }
-  return open <= kFrontOpen * steps;
+  Span line = body;
+  line.low[way] = line.high[way] = at;
+  const SurfaceAlong along = surface_along(map, map_from_axes * Point2{line.low[0], line.low[1]},
+                                           map_from_axes * Point2{line.high[0], line.high[1]});
+  return along.all - along.places <= kFrontOpen * along.all;
 }
 
 /// So far from that end of the way its front lies now.
