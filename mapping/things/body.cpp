@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/grid/grid_ray.hpp"
 #include "mapping/things/assumed.hpp"
@@ -80,14 +81,17 @@ BodyCells cells_of(const Body& body, Side side, const OccupancyGrid& map) {
   return cells;
 }
 
-/// Places, a cell apart, on the sides that were seen, at which a surface lies.
-std::size_t surface_on_seen_sides(const Outline& at, const OccupancyGrid& map) {
+/// Of the sides that were seen.
+SurfaceAlong surface_on_seen_sides(const Outline& at, const OccupancyGrid& map) {
   const std::array<Point2, 4> ends = corners(at);
-  int places = 0;
+  SurfaceAlong sides;
   for (std::size_t side = 0; side < ends.size(); ++side) {
-    if (at.seen[side]) places += surface_along(map, ends[side], ends[(side + 1) % ends.size()]).places;
+    if (!at.seen[side]) continue;
+    const SurfaceAlong along = surface_along(map, ends[side], ends[(side + 1) % ends.size()]);
+    sides.places += along.places;
+    sides.all += along.all;
   }
-  return static_cast<std::size_t>(places);
+  return sides;
 }
 
 bool is_same_size(const Outline& a, const Outline& b, double tolerance_m) {
@@ -136,19 +140,24 @@ void forget_gone(Body& body) {
 
 void leave(Body& body, const ChangedMap& step) {
   Thing& thing = body.thing;
-  thing.kind = step.takes_back ? ThingKind::kTakenBack : ThingKind::kGone;
-  thing.from = thing.at;
+  const bool never_was = body.is_pushed_back && body.come.empty();  // nothing is left of what it had come with
+  const bool is_undone_move = step.takes_back && thing.kind == ThingKind::kMoved && thing.from && !never_was;
+  thing.kind = step.takes_back && !is_undone_move ? ThingKind::kTakenBack : ThingKind::kGone;
+  if (!is_undone_move) {
+    thing.from = thing.at;
+    body.freed.reset();
+    forget_gone(body);
+  }
   thing.at.reset();
-  body.freed.reset();
   body.is_pushed = body.is_pushed_back = false;
-  forget_gone(body);
   body.began = body.grown = step.time;
 }
 
 void judge_standing(Body& body, const ChangedMap& step, const ThingsParams& params) {
   const BodyCells cells = cells_of(body, Side::kCome, step.map);
-  const std::size_t faces =
-      body.is_pushed_back && body.thing.at ? surface_on_seen_sides(*body.thing.at, step.map) : cells.faces.size();
+  const std::size_t faces = body.is_pushed_back && body.thing.at
+                                ? static_cast<std::size_t>(surface_on_seen_sides(*body.thing.at, step.map).places)
+                                : cells.faces.size();
   const std::size_t most = std::max(body.most_faces_come, faces);
   body.most_faces_come = most;
   if (static_cast<double>(faces) < kLeftShare * static_cast<double>(most)) {
@@ -187,8 +196,8 @@ void judge_gone(Body& body, const ChangedMap& step) {
     if (!body.thing.at) body.thing.kind = ThingKind::kGone;
     return;
   }
-  if (step.takes_back && body.told) body.thing.kind = ThingKind::kTakenBack;
-  if (!body.told) body.thing.from.reset();
+  if (step.takes_back && body.told) body.thing.kind = body.thing.at ? ThingKind::kAppeared : ThingKind::kTakenBack;
+  if (!body.told || (step.takes_back && body.thing.at)) body.thing.from.reset();
   forget_gone(body);  // something else stands there by now
 }
 
@@ -254,7 +263,7 @@ void own(Body& body, std::span<const CellChange> cells, Side side) {
 }
 
 void judge(Body& body, const ChangedMap& step, const ThingsParams& params) {
-  if (step.takes_back) body.is_pushed = body.is_pushed_back = false;
+  if (step.takes_back && !body.is_pushed_back && !body.has_returned) body.is_pushed = false;
   if (!body.come.empty() || body.thing.at) judge_standing(body, step, params);
   if (body.most_faces_gone > 0 || !body.gone.empty()) judge_gone(body, step);
   body.thing.last_seen = step.time;
@@ -277,9 +286,27 @@ std::optional<Outline> pushed_back_to(const ChangedMap& step, const Body& body, 
 void push_back(Body& body, const Outline& at, const OccupancyGrid& map) {
   body.thing.at = at;
   body.thing.kind = ThingKind::kMoved;
-  body.most_faces_come = surface_on_seen_sides(at, map);
+  body.most_faces_come = static_cast<std::size_t>(surface_on_seen_sides(at, map).places);
   body.is_pushed = body.is_pushed_back = true;
   body.is_touched = true;
+}
+
+bool has_left(const Body& body, const OccupancyGrid& map) {
+  const Thing& thing = body.thing;
+  if (!thing.from || body.most_faces_come == 0) return false;
+  if (thing.kind == ThingKind::kGone || body.is_pushed_back) return true;
+  if (thing.kind != ThingKind::kMoved) return false;
+  const SurfaceAlong sides = surface_on_seen_sides(*thing.at, map);
+  return sides.places < kLeftShare * sides.all;
+}
+
+void stand_again(Body& body, const OccupancyGrid& map) {
+  body.has_returned = true;
+  if (!body.thing.at) return;  // judge() tells where
+  body.most_faces_come = static_cast<std::size_t>(surface_on_seen_sides(*body.thing.from, map).all);
+  body.thing.at = std::exchange(body.thing.from, std::nullopt);
+  body.thing.kind = ThingKind::kAppeared;
+  body.is_pushed_back = false;
 }
 
 std::size_t faces_within(const Body& body, const Outline& outline, const OccupancyGrid& map) {

@@ -55,6 +55,7 @@ struct Body {
   std::optional<Thing> told;       ///< as it was told last; nothing: not yet
   bool is_touched = false;         ///< by the revision that is being taken
   bool has_grown = false;          ///< by the same
+  bool has_returned = false;       ///< by the same, to where it was told to have left
   int looks_through = 0;           ///< scans with beams through what is assumed of it
   std::optional<Outline> freed{};  ///< the floor that what has gone has left; its outline may reach up to neighbours
   bool is_pushed = false;  ///< its outlines are those of a body that was pushed: what it has of cells are two strips
@@ -80,6 +81,11 @@ void judge(Body& body, const ChangedMap& step, const ThingsParams& params);
 /// shows how far, if that is no other body's. None: nothing shows.
 [[nodiscard]] std::optional<Outline> pushed_back_to(const ChangedMap& step, const Body& body, double one_look_s);
 void push_back(Body& body, const Outline& at, const OccupancyGrid& map);
+
+/// It had come to where it was told to have left: gone, moved to where the map shows it no more, or pushed back.
+[[nodiscard]] bool has_left(const Body& body, const OccupancyGrid& map);
+/// Its leaving is taken back: it stands where it stood.
+void stand_again(Body& body, const OccupancyGrid& map);
 
 /// Cells within the outline at which the body's surface stands.
 [[nodiscard]] std::size_t faces_within(const Body& body, const Outline& outline, const OccupancyGrid& map);

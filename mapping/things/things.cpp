@@ -35,6 +35,12 @@ bool is_beyond(const std::vector<CellChange>& cluster, const Outline& outline, c
   return 2 * static_cast<std::size_t>(outside) > cluster.size();
 }
 
+/// To where it was told to have left, or to the same place as an earlier cluster of the revision.
+bool returns_to(const Body& body, const std::vector<CellChange>& cluster, const OccupancyGrid& map) {
+  return (body.has_returned || has_left(body, map)) &&
+         !is_beyond(cluster, body.thing.from ? *body.thing.from : *body.thing.at, map.geometry());
+}
+
 std::vector<Point2> places_of(const std::vector<CellChange>& cluster, const GridGeometry& geometry) {
   std::vector<Point2> places;
   places.reserve(cluster.size());
@@ -78,7 +84,7 @@ struct Things::Step {
 std::vector<ThingEvent> Things::take(const ChangedMap& changed) {
   const int gap_cells = std::max(1, static_cast<int>(std::lround(params_.gap_m / changed.map.resolution_m())));
   const Step step{changed, map_before(changed), gap_cells};
-  for (Body& body : bodies_) body.is_touched = body.has_grown = false;
+  for (Body& body : bodies_) body.is_touched = body.has_grown = body.has_returned = false;
   joined_.clear();
   newest_revision_ = changed.number;
   const Cells left = restored(step);
@@ -110,8 +116,10 @@ Things::Cells Things::restored(const Step& step) {
         }
         body->is_touched = true;
       }
-      if (body->gone.before(change.cell) && change.after != CellState::kFree) {
+      const auto before = body->gone.before(change.cell);
+      if (before && change.after != CellState::kFree) {
         body->gone.drop(change.cell);
+        is_claimed = is_claimed || (step.now.takes_back && change.after == *before);
         body->is_touched = true;
       }
     }
@@ -163,10 +171,9 @@ Body* Things::body_of(const Step& step, const Cells& cluster, Side side) {
   std::size_t most = 0;
   for (auto next = bodies_.begin(); next != bodies_.end();) {
     Body& body = *next++;
-    const bool has_gone = side == Side::kCome && body.thing.kind == ThingKind::kGone && body.most_faces_come > 0;
-    if (has_gone && step.now.takes_back && body.thing.from &&
-        !is_beyond(cluster, *body.thing.from, step.now.map.geometry())) {
-      return &body;  // the word that it has gone is taken back
+    if (side == Side::kCome && step.now.takes_back && returns_to(body, cluster, step.now.map)) {
+      if (!body.has_returned) stand_again(body, step.now.map);
+      return &body;
     }
     const std::size_t grows_by = cells_it_grows_by(body, step, cluster, side);
     if (grows_by == 0) continue;

@@ -109,7 +109,9 @@ TEST_F(PushedBody, IsOneThingThatMoved) {
   expect_outline(*site.things.all()[0].at, kNew);
   const auto undone = site.undo(2, 400.0);
   ASSERT_FALSE(undone.empty());
-  EXPECT_NE(site.things.all()[0].kind, ThingKind::kMoved) << "the going was taken back";
+  const Thing thing = site.things.all()[0];
+  EXPECT_EQ(thing.kind, ThingKind::kAppeared) << "the going was taken back, and what came stands";
+  EXPECT_FALSE(thing.from);
 }
 
 // A body that closes off a bay of 2.4 m between two walls, and is pushed into it by 0.5 m.
@@ -152,6 +154,56 @@ TEST_F(PushedBack, IsOneThingThatMoved) {
   EXPECT_NE(site.things.all()[0].kind, ThingKind::kMoved) << "it has left the bay";
 }
 
+TEST_F(PushedBack, AnUndoneOneStandsWhereItStood) {
+  const Outline stood = *site.things.all()[0].at;
+  site.clear({4.0, 2.12, 6.4, 2.5}).revision(100.0);
+  site.north(kDeeper).revision(110.0);
+  ASSERT_EQ(site.things.all()[0].kind, ThingKind::kMoved);
+  const auto unseen = site.undo(3, 400.0);
+  ASSERT_EQ(unseen.size(), 1u);
+  EXPECT_EQ(unseen[0].thing.kind, ThingKind::kGone) << "nobody knows where to";
+  EXPECT_EQ(*unseen[0].thing.from, stood);
+  const auto back = site.undo(2, 410.0);
+  ASSERT_EQ(back.size(), 1u);
+  EXPECT_EQ(back[0].thing.id, 1u);
+  EXPECT_EQ(back[0].thing.kind, ThingKind::kAppeared);
+  EXPECT_FALSE(back[0].thing.from);
+  expect_outline(*back[0].thing.at, kInBay);
+  site.clear(kInBay).revision(900.0);
+  EXPECT_EQ(site.things.all()[0].kind, ThingKind::kGone);
+}
+
+TEST_F(PushedBack, AnUndoOfItsFirstRevisionAlonePutsItBackToo) {
+  site.clear({4.0, 2.12, 6.4, 2.5}).revision(100.0);
+  site.north(kDeeper).revision(110.0);
+  const auto back = site.undo(2, 400.0);
+  ASSERT_EQ(back.size(), 1u);
+  EXPECT_EQ(back[0].thing.kind, ThingKind::kAppeared);
+  EXPECT_FALSE(back[0].thing.from);
+  expect_outline(*back[0].thing.at, kInBay);
+}
+
+TEST_F(PushedBack, ARollbackPutsItBack) {
+  const OccupancyGrid stood = site.map;
+  site.clear({4.0, 2.12, 6.4, 2.5}).revision(100.0);
+  site.north(kDeeper).revision(110.0);
+  site.next = stood;
+  const auto back = site.revision(400.0, true);
+  ASSERT_EQ(back.size(), 1u);
+  EXPECT_EQ(back[0].thing.kind, ThingKind::kAppeared);
+  EXPECT_FALSE(back[0].thing.from);
+  expect_outline(*back[0].thing.at, kInBay);
+}
+
+TEST_F(PushedBack, AnUndoOfItsComingTakesItBack) {
+  site.clear({4.0, 2.12, 6.4, 2.5}).revision(100.0);
+  site.north(kDeeper).revision(110.0);
+  site.clear(kInBay);
+  const auto told = site.revision(400.0, true);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].thing.kind, ThingKind::kTakenBack);
+}
+
 TEST_F(PushedBack, AnotherOnFloorThatWasSeenFreeIsAnother) {
   site.clear(kInBay).revision(100.0);
   site.fill(kDeeper, CellState::kUnknown).north(kDeeper).revision(140.0);
@@ -172,6 +224,12 @@ TEST_F(PushedBody, ThatIsPushedBackHasMovedOn) {
   EXPECT_EQ(told[0].thing.kind, ThingKind::kMoved);
   expect_outline(*told[0].thing.from, kNew);
   expect_outline(*told[0].thing.at, kOld);
+  DrawnSite undoing = site;
+  const auto undone = undoing.undo(3, 600.0);
+  ASSERT_EQ(undone.size(), 1u);
+  EXPECT_EQ(undone[0].thing.kind, ThingKind::kAppeared);
+  EXPECT_FALSE(undone[0].thing.from);
+  expect_outline(*undone[0].thing.at, kNew);
   site.clear(kOld).revision(900.0);
   EXPECT_FALSE(site.things.all()[0].at) << "it has left for good";
 }

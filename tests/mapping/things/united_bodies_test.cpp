@@ -92,5 +92,36 @@ TEST(UnitedBodies, AnUndoTellsNoMove) {
   }
 }
 
+TEST(UnitedBodies, AnUndoneMoveLeavesTheThingWhereItStood) {
+  for (const bool in_one_revision : {true, false}) {
+    DrawnSite site;
+    site.box(kBox).revision(10.0);
+    site.clear(kBox);
+    if (!in_one_revision) site.revision(500.0);
+    site.box({4.6, 4.3, 7.0, 5.9}).revision(510.0);
+    ASSERT_EQ(site.things.all().size(), 1u);
+    ASSERT_EQ(site.things.all()[0].kind, ThingKind::kMoved);
+    if (!in_one_revision) {
+      EXPECT_EQ(site.undo(3, 600.0).at(0).thing.kind, ThingKind::kGone) << "nobody knows where to";
+    }
+    const auto back = site.undo(2, 610.0);
+    ASSERT_EQ(back.size(), 1u);
+    EXPECT_EQ(back[0].thing.kind, ThingKind::kAppeared);
+    EXPECT_EQ(back[0].thing.id, 1u);
+    EXPECT_FALSE(back[0].thing.from);
+    expect_outline(*back[0].thing.at, kBox);
+  }
+}
+
+TEST(UnitedBodies, AnUndoneMoveOfWhatStoodFromTheBeginningIsTakenBack) {
+  DrawnSite site;
+  site.box(kBox).begin_with_what_is_drawn();
+  site.clear(kBox).revision(10.0);
+  site.box({4.6, 4.3, 7.0, 5.9}).revision(20.0);
+  ASSERT_EQ(site.things.all()[0].kind, ThingKind::kMoved);
+  EXPECT_EQ(site.undo(2, 600.0).at(0).thing.kind, ThingKind::kGone);
+  EXPECT_EQ(site.undo(1, 610.0).at(0).thing.kind, ThingKind::kTakenBack) << "it never went";
+}
+
 }  // namespace
 }  // namespace deltamap::mapping::things
