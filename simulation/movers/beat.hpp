@@ -21,8 +21,8 @@ class Beat {
   void reach();
   /// Back where one came from.
   void turn_back();
-  /// From wherever one is, straight to that corner, of corners().
-  void head_for(std::size_t corner) { aim_ = corner; }
+  /// From wherever one is, straight to that corner of all but the one that is walked to, below corners() - 1.
+  void head_for_other(std::size_t corner) { aim_ = corner + (corner >= aim_ ? 1 : 0); }
   /// From outside of the corners to the first.
   void begin_anew();
 

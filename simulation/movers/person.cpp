@@ -51,10 +51,10 @@ void Person::move(double dt_s, const RayCaster& world, const Circle& robot, std:
 }
 
 /// Back where one came from. Who has walked but a few steps since the way was shut before is shut in on the beat, and
-/// goes to any corner of it.
+/// goes to any other corner of it.
 void Person::look_for_another_way() {
   if (since_blocked_m_ < kFewSteps_m && beat_.corners() > 2) {
-    beat_.head_for(random_.index_below(static_cast<std::uint32_t>(beat_.corners())));
+    beat_.head_for_other(random_.index_below(static_cast<std::uint32_t>(beat_.corners() - 1)));
   } else {
     beat_.turn_back();
   }
