@@ -14,7 +14,8 @@ source "$(dirname "$0")/lib/pinned.bash"
 
 debian_programs libmrpt-{comms,config,core,hwdrivers,math,obs,poses,rtti,serialization,system}2.5=1:2.5.8+ds-2
 debian_files libmrpt-{bayes,comms,common,config,containers,core,expr,graphs,gui,hwdrivers,img,io,maps}-dev=1:2.5.8+ds-2 \
-  libmrpt-{math,obs,opengl,poses,random,rtti,serialization,slam,system,tfest,topography,typemeta,vision}-dev=1:2.5.8+ds-2 libeigen3-dev=3.4.0-4
+  libmrpt-{math,obs,opengl,poses,random,rtti,serialization,slam,system,tfest,topography,typemeta,vision}-dev=1:2.5.8+ds-2 \
+  libeigen3-dev=3.4.0-4
 port=$((20000 + RANDOM % 10000))
 cat > laser.py << 'PY'
 # A TiM561 in its words (CoLa A): beams of a third of a degree, and a post, 1 m away, where the telegram says 0 degrees.

@@ -3,8 +3,8 @@
 # Guess: Turf's predicates are those of OGC's simple features, as each of them says: bays that share an edge touch and do not
 #   overlap, an area that crosses itself is not valid, and a zone with a hole does not contain what fills the hole.
 # Seen: bays side by side overlap by booleanOverlap; a hall touches the bay in its corner, all inside, by booleanTouches, and
-#   the bay does not touch the hall; a bow tie, whose area is 0, and an area with a hole that lies outside of it are valid; a zone with a pit
-#   contains a vehicle that stands over the pit, corners beyond it.
+#   the bay does not touch the hall; a bow tie, whose area is 0, and an area with a hole that lies outside of it are valid;
+#   a zone with a pit contains a vehicle that stands over the pit, corners beyond it.
 # Matters: a dispatcher's page that checks drawn areas by them refuses rows of bays, lets a crossed zone pass, of which no
 #   program that follows says which half is inside, and sends a vehicle over a pit.
 # Version: @turf/turf 7.4.0 (npm). Source: its README: booleanOverlap wants an intersection of the same dimension,
