@@ -102,6 +102,13 @@ class Fields {
     for (float& value : values) value = number<float>();
     return values;
   }
+  /// Of a list of messages. XCDR2 writes before it how many bytes the list takes, which @foxglove/cdr leaves to its
+  /// caller.
+  std::uint32_t count_of_messages() {
+    const auto count = number<std::uint32_t>();
+    const bool is_size = most_aligned_ == 4 && count > 0 && count <= reader_.left() && reader_.left() - count < 4;
+    return is_size ? number<std::uint32_t>() : count;
+  }
   /// Seq, stamp, frame; ROS 2 has no seq.
   std::pair<Timestamp, std::string> header() {
     if (!is_cdr_) (void)number<std::uint32_t>();
@@ -155,7 +162,7 @@ RosPose transform_of_fields(Fields& fields) {
 std::vector<RosPose> poses_of_fields(Fields fields, Kind kind) {
   std::vector<RosPose> poses;
   if (kind == Kind::kTransforms) {
-    const auto count = fields.number<std::uint32_t>();
+    const std::uint32_t count = fields.count_of_messages();
     for (std::uint32_t i = 0; i < count; ++i) poses.push_back(transform_of_fields(fields));
   } else if (kind == Kind::kPoseStamped) {
     RosPose pose;

@@ -125,6 +125,25 @@ TEST_F(ImportMessages, ReadsXcdr2WhichAlignsDoublesToFourBytes) {
   }
 }
 
+TEST_F(ImportMessages, ReadsTransformsInXcdr2WithAndWithoutTheSizeOfTheirList) {
+  for (const bool sized : {true, false}) {
+    std::vector<TestMessage> messages{{"/tf_static", "tf2_msgs/msg/TFMessage", kBegin_s,
+                                       xcdr2_transform_bytes(kBegin_s, "base_link", "laser", {0.2, 0.1, 0.0}, sized)}};
+    for (const TestMessage& message : drive(true, "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry")) {
+      if (message.topic == "/scan") messages.push_back(message);
+    }
+    for (int i = 0; i < kScans; ++i) {
+      const double time_s = kBegin_s + 0.125 * i;
+      messages.push_back({"/tf", "tf2_msgs/msg/TFMessage", time_s,
+                          xcdr2_transform_bytes(time_s, "odom", "base_link", {0.05 * i, 0.0, 0.01 * i}, sized)});
+    }
+    const ImportedMessages done = import_messages(wanted(mcap_of(messages, "cdr", ""), false));
+    expect_the_drive(done);
+    EXPECT_EQ(done.notes.size(), 3u) << "no message is left out";
+    EXPECT_NE(done.notes.front().find("laser.mount.x_m=0.2 --set laser.mount.y_m=0.1"), std::string::npos);
+  }
+}
+
 TEST_F(ImportMessages, LeavesOutCdrThatHasLengthsBetweenItsFields) {
   auto ros2 = drive(true, "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry");
   ros2.push_back({"/odom", "nav_msgs/msg/Odometry", kBegin_s + 3.0, odometry_bytes(kBegin_s + 3.0, 9.0, 0, true, 9)});

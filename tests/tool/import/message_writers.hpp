@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/pose2.hpp"
+
 namespace deltamap::tool {
 
 template <typename Number>
@@ -87,6 +89,19 @@ inline std::string transform_bytes(double time_s, const std::string& frame, cons
                                    double y, double theta) {
   RosBytes out{false};
   return out.add(std::uint32_t{1}).header(time_s, frame).text(child).pose(x, y, theta).bytes();
+}
+/// As XCDR2; `sized`: with the size of the list before it.
+inline std::string xcdr2_transform_bytes(double time_s, const std::string& frame, const std::string& child,
+                                         const Pose2& pose, bool sized) {
+  constexpr std::size_t kHeadBytes = 4;
+  std::string bytes = RosBytes{true, 7}
+                          .add(std::uint32_t{1})
+                          .header(time_s, frame)
+                          .text(child)
+                          .pose(pose.x, pose.y, pose.theta)
+                          .bytes();
+  if (sized) bytes.insert(kHeadBytes, le(static_cast<std::uint32_t>(bytes.size() - kHeadBytes)));
+  return bytes;
 }
 
 struct TestMessage {
