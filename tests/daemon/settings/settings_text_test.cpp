@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/settings/settings.hpp"
@@ -18,6 +20,13 @@ using test::Lines;
 struct Case {
   std::string yaml;
   Lines errors;
+
+  /// For the names of the tests: what is no plain character of a word or of a path stands as '_'.
+  friend std::ostream& operator<<(std::ostream& out, const Case& one) {
+    constexpr std::string_view kPlain{"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.:/=-@"};
+    for (const char letter : one.yaml) out << (kPlain.find(letter) == std::string_view::npos ? '_' : letter);
+    return out;
+  }
 };
 
 class SettingsText : public testing::TestWithParam<Case> {};

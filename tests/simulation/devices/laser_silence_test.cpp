@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 
 #include "core/random.hpp"
 #include "drivers/lms200/session.hpp"
@@ -27,6 +28,8 @@ struct SilenceCase {
   Silence kind;
   unsigned baud;
   lms200::ScanVariant variant;
+
+  friend std::ostream& operator<<(std::ostream& out, const SilenceCase& tested) { return out << tested.name; }
 };
 
 /// The session on its port, the port on the laser.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "drivers/lms200/command.hpp"
 #include "drivers/lms200/measurement.hpp"
@@ -75,6 +76,10 @@ struct RateCase {
   lms200::ScanVariant variant;
   unsigned baud;
   int every;  // nth scan, table B7
+
+  friend std::ostream& operator<<(std::ostream& out, const RateCase& one) {
+    return out << name_of(one.variant) << " at " << one.baud;
+  }
 };
 
 class ScanRate : public ::testing::TestWithParam<RateCase> {};
