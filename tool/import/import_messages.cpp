@@ -146,7 +146,7 @@ class Collector {
 };
 
 /// To a micrometre and a millionth of a degree: more digits are of the arithmetic.
-std::string rounded_text(double value) { return shortest_text(std::round(1e6 * value) / 1e6); }
+std::string rounded_text(double value) { return shortest_text(std::round(1e6 * value) / 1e6 + 0.0); }
 
 std::string settings_line(const ReadMessages& read) {
   const RosScan& scan = read.scans.front();
@@ -158,9 +158,10 @@ std::string settings_line(const ReadMessages& read) {
   if (!base_from_frame) {
     return line + " laser.mount by hand: no transform tells where \"" + scan.frame + "\" lies in \"" + base + "\"";
   }
-  const Pose2 mount = *base_from_frame * scan.frame_from_scan;
+  const auto [mount, is_upside_down] = *base_from_frame * scan.frame_from_scan;
   return line + " --set laser.mount.x_m=" + rounded_text(mount.x) + " --set laser.mount.y_m=" + rounded_text(mount.y) +
-         " --set laser.mount.yaw_deg=" + rounded_text(degrees(mount.theta));
+         " --set laser.mount.yaw_deg=" + rounded_text(degrees(mount.theta)) +
+         (is_upside_down ? " --set laser.mount.upside_down=true" : "");
 }
 
 std::vector<std::string> notes_of(const ReadMessages& read, const WrittenLog& log) {

@@ -86,7 +86,7 @@ class LogLines {
 
 std::string line_of_pose(const RosPose& pose) {
   std::string line = "ODOM";
-  for (const double value : {pose.pose.x, pose.pose.y, pose.pose.theta}) put(line, value);
+  for (const double value : {pose.at.pose.x, pose.at.pose.y, pose.at.pose.theta}) put(line, value);
   line += " 0 0 0";
   put_time(line, pose.time);
   return line;
@@ -116,16 +116,16 @@ WrittenLog write_carmen_log(const std::filesystem::path& file, std::vector<RosSc
   return lines.written();
 }
 
-std::optional<Pose2> mount_by(const std::vector<RosPose>& transforms, const std::string& laser_frame,
-                              const std::string& base) {
+std::optional<PlanarPose> mount_by(const std::vector<RosPose>& transforms, const std::string& laser_frame,
+                                   const std::string& base) {
   constexpr int kLongestChain = 20;
-  Pose2 base_from_laser{};
+  PlanarPose base_from_laser;
   std::string frame = laser_frame;
   for (int i = 0; i < kLongestChain && frame != base; ++i) {
     const auto found = std::find_if(transforms.begin(), transforms.end(),
                                     [&](const RosPose& transform) { return transform.child == frame; });
     if (found == transforms.end()) return std::nullopt;
-    base_from_laser = found->pose * base_from_laser;
+    base_from_laser = found->at * base_from_laser;
     frame = found->frame;
   }
   return frame == base ? std::optional{base_from_laser} : std::nullopt;

@@ -24,7 +24,7 @@ struct WrittenLog {
                                           std::vector<RosPose>& poses, std::optional<double> no_return_m);
 
 /// Where the scans' frame lies in `base`, by the transforms; nothing where no chain of them leads there.
-[[nodiscard]] std::optional<Pose2> mount_by(const std::vector<RosPose>& transforms, const std::string& laser_frame,
-                                            const std::string& base);
+[[nodiscard]] std::optional<PlanarPose> mount_by(const std::vector<RosPose>& transforms, const std::string& laser_frame,
+                                                 const std::string& base);
 
 }  // namespace deltamap::tool

@@ -53,14 +53,11 @@ Timestamp stamp_of(std::int64_t sec, std::int64_t nsec) {
   return timestamp_from_ns(sec * 1'000'000'000 + nsec);
 }
 
-double yaw_of(double x, double y, double z, double w) {
-  return std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-}
-
-Pose2 checked(const Pose2& pose) {
-  if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.theta))
-    throw std::runtime_error("its pose is no number");
-  return pose;
+/// Of the unit quaternion (x, y, z, w).
+PlanarPose planar_pose(const Point2& at, double x, double y, double z, double w) {
+  const double yaw_rad = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+  if (!at.allFinite() || !std::isfinite(yaw_rad)) throw std::runtime_error("its pose is no number");
+  return {{at.x(), at.y(), yaw_rad}, 2.0 * (x * x + y * y) > 1.0};
 }
 
 std::string without_slash(std::string_view frame) { return std::string(frame.substr(frame.starts_with('/') ? 1 : 0)); }
@@ -90,10 +87,10 @@ class Fields {
     return stamp_of(sec, number<std::uint32_t>());
   }
   /// Position and quaternion, each number 8 bytes.
-  Pose2 pose() {
+  PlanarPose pose() {
     std::array<double, 7> n{};
     for (double& value : n) value = number<double>();
-    return checked({n[0], n[1], yaw_of(n[3], n[4], n[5], n[6])});
+    return planar_pose({n[0], n[1]}, n[3], n[4], n[5], n[6]);
   }
   std::vector<float> floats() {
     const auto count = number<std::uint32_t>();
@@ -155,7 +152,7 @@ RosPose transform_of_fields(Fields& fields) {
   RosPose pose;
   std::tie(pose.time, pose.frame) = fields.header();
   pose.child = without_slash(fields.text());
-  pose.pose = fields.pose();
+  pose.at = fields.pose();
   return pose;
 }
 
@@ -167,7 +164,7 @@ std::vector<RosPose> poses_of_fields(Fields fields, Kind kind) {
   } else if (kind == Kind::kPoseStamped) {
     RosPose pose;
     std::tie(pose.time, pose.frame) = fields.header();
-    pose.pose = fields.pose();
+    pose.at = fields.pose();
     poses.push_back(std::move(pose));
   } else {
     poses.push_back(transform_of_fields(fields));  // an Odometry begins alike
@@ -212,12 +209,11 @@ std::string frame_in(const Json& json) {
   return text_in(header != nullptr ? *header : json, {"frame_id", "parent_frame_id"});
 }
 
-Pose2 pose_in(const Json& json) {
+PlanarPose pose_in(const Json& json) {
   const Json& at = needed(json, {"position", "translation"});
   const Json& turn = needed(json, {"orientation", "rotation"});
-  return checked(
-      {number_in(at, {"x"}), number_in(at, {"y"}),
-       yaw_of(number_in(turn, {"x"}), number_in(turn, {"y"}), number_in(turn, {"z"}), number_in(turn, {"w"}))});
+  return planar_pose({number_in(at, {"x"}), number_in(at, {"y"})}, number_in(turn, {"x"}), number_in(turn, {"y"}),
+                     number_in(turn, {"z"}), number_in(turn, {"w"}));
 }
 
 RosScan scan_of_json(const Json& json) {

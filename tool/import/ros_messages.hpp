@@ -13,10 +13,21 @@
 
 namespace deltamap::tool {
 
+/// A frame in the plane whose z axis points up or down: what lies in one that hangs upside down is mirrored.
+struct PlanarPose {
+  Pose2 pose{};  ///< theta: of its x axis
+  bool is_upside_down = false;
+};
+[[nodiscard]] inline PlanarPose operator*(const PlanarPose& a_from_b, const PlanarPose& b_from_c) {
+  const Pose2& within = b_from_c.pose;
+  return {a_from_b.pose * (a_from_b.is_upside_down ? Pose2{within.x, -within.y, -within.theta} : within),
+          a_from_b.is_upside_down != b_from_c.is_upside_down};
+}
+
 struct RosScan {
   Timestamp time;  ///< of the first beam
   std::string frame;
-  Pose2 frame_from_scan;  ///< where its beams begin; Foxglove's scans tell it
+  PlanarPose frame_from_scan;  ///< where its beams begin; Foxglove's scans tell it
   double first_bearing_rad = 0.0;
   double bearing_step_rad = 0.0;  ///< negative: clockwise
   double min_range_m = 0.0;       ///< shorter: not valid
@@ -28,7 +39,7 @@ struct RosPose {
   Timestamp time;
   std::string frame;  ///< in which it is told
   std::string child;  ///< whose pose it is; may be empty
-  Pose2 pose;
+  PlanarPose at;
 };
 
 /// Whether scans, and whether poses or transforms, are read from messages of this type and encoding.

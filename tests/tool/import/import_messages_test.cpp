@@ -190,6 +190,21 @@ TEST_F(ImportMessages, TellsTheMountThatFoxglovesScansCarry) {
             "settings to use: --set laser.mount.x_m=0.2 --set laser.mount.y_m=0.1 --set laser.mount.yaw_deg=10");
 }
 
+TEST_F(ImportMessages, TellsALaserThatHangsUpsideDownByOneOfItsTransforms) {
+  std::vector<TestMessage> messages = ros1_drive();
+  messages.push_back({"/tf_static", "tf2_msgs/TFMessage", kBegin_s,
+                      hanging_bytes(kBegin_s, "base_link", "mast", 0.2, 0.0, radians(90.0))});
+  messages.push_back({"/tf_static", "tf2_msgs/TFMessage", kBegin_s,
+                      transform_bytes(kBegin_s, "mast", "laser", 0.0, 0.1, radians(30.0))});
+  const std::string at =
+      "settings to use: --set laser.max_range_m=30 --set laser.mount.x_m=0.3 --set laser.mount.y_m=0 ";
+  EXPECT_EQ(import_messages(wanted(bag_of(messages, "none"), true)).notes.front(),
+            at + "--set laser.mount.yaw_deg=60 --set laser.mount.upside_down=true");
+  messages.back().bytes = hanging_bytes(kBegin_s, "mast", "laser", 0.0, 0.1, radians(30.0));
+  EXPECT_EQ(import_messages(wanted(bag_of(messages, "none"), true)).notes.front(), at + "--set laser.mount.yaw_deg=60")
+      << "two that hang make one that stands";
+}
+
 TEST_F(ImportMessages, TurnsRoundScansThatAreToldClockwise) {
   std::vector<TestMessage> messages = ros1_drive();
   for (TestMessage& message : messages) {

@@ -103,6 +103,14 @@ inline std::string xcdr2_transform_bytes(double time_s, const std::string& frame
   if (sized) bytes.insert(kHeadBytes, le(static_cast<std::uint32_t>(bytes.size() - kHeadBytes)));
   return bytes;
 }
+/// The child's z axis points down.
+inline std::string hanging_bytes(double time_s, const std::string& frame, const std::string& child, double x, double y,
+                                 double theta) {
+  RosBytes out{false};
+  out.add(std::uint32_t{1}).header(time_s, frame).text(child);
+  for (const double value : {x, y, 0.0, std::cos(0.5 * theta), std::sin(0.5 * theta), 0.0, 0.0}) out.add(value);
+  return out.bytes();
+}
 
 struct TestMessage {
   std::string topic;
