@@ -7,7 +7,7 @@
 #   same. The response is as high as for the right ones. Padded sizes of 45, 75, 81, 125, 135, 225, 243 and 375 are such.
 # Matters: matching local maps, or the drift between two surveys: 2.5 cm at cells of 5 cm, always in one direction, which adds up from
 #   match to match, and comes and goes with the size of the cut-out. Cut out even getOptimalDFTSize().
-# Version: OpenCV 4.6.0 (python3-opencv 4.6.0+dfsg-12). Source: imgproc.hpp, phaseCorrelate: "sub-pixel accuracy", pads with
+# Version: OpenCV 4.6.0 (libopencv-imgproc406 4.6.0+dfsg-12). Source: imgproc.hpp, phaseCorrelate: "sub-pixel accuracy", pads with
 #   getOptimalDFTSize, and the shift is from the middle of the peak to the middle of the image.
 set -euo pipefail
 source "$(dirname "$0")/lib/pinned.bash"
