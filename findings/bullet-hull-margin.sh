@@ -3,7 +3,7 @@
 # Guess: Bullet's rayTest hits a convex hull of eight corners where it hits the box with these corners: the collision margin is for contacts.
 # Seen: a box is hit at its face, the hull of the same corners 4 cm before it, and a ray that passes 3 cm beside the hull hits it: the
 #   margin is laid around hulls, and for rays as well. 4 cm is the default, whatever the size of the body. With setMargin(0)
-#   both agree to some micrometres, and a compound of boxes is as its boxes.
+#   both agree, and a compound of boxes is as its boxes.
 # Matters: a simulated laser reads 4 cm short of each mesh that was turned into hulls, and sees posts of 4 cm as ones of 12; next to boxes
 #   in the same hall, which are right, it looks like a laser's bias by material. A map that is drawn from it has narrow doors.
 # Version: Bullet 3.24 (libbullet3.24 3.24+dfsg-2). Source: its manual tells of margins that convex hulls are to be shrunk for, and of rays
