@@ -253,6 +253,18 @@ TEST(Things, AnUndoOfAGoingLeavesTheThingWhereItStood) {
   expect_outline(*told[0].thing.at, kBox);
 }
 
+TEST(Things, AnUndoOfAGoingGivesItsFloorToNoNeighbour) {
+  const Drawn neighbour{4.0, 5.65, 4.0, 7.7};
+  DrawnSite site;
+  site.box(kBox).fill({4.05, 4.05, 6.35, 5.55}, CellState::kUnknown).begin_with_what_is_drawn();
+  site.fill(neighbour, CellState::kOccupied).revision(10.0);
+  const std::size_t cells = site.things.undoing(1, site.map).size();
+  site.clear(kBox).revision(15.0);
+  site.undo(2, 40.0);
+  expect_outline(*site.things.all()[0].at, neighbour);
+  EXPECT_EQ(site.things.undoing(1, site.map).size(), cells);
+}
+
 TEST(Things, WhatTakesBackTellsOfNothingNew) {
   DrawnSite site;
   EXPECT_TRUE(site.box(kBox).revision(10.0, true).empty());
