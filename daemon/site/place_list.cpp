@@ -149,8 +149,10 @@ std::string places_as_yaml(const std::vector<ListedPlace>& places, const PlaceKe
   for (const ListedPlace& place : places) {
     yaml += "  - " + keys.id + ": " + in_quotes(place.id) + "\n";
     for (const std::string& key : keys.words) {
-      if (const auto word = place.words.find(key); word != place.words.end())
-        yaml += "    " + key + ": " + in_quotes(word->second) + "\n";
+      const auto word = place.words.find(key);
+      if (word == place.words.end()) continue;
+      const bool is_number = std::find(keys.numbers.begin(), keys.numbers.end(), key) != keys.numbers.end();
+      yaml += "    " + key + ": " + (is_number ? word->second : in_quotes(word->second)) + "\n";
     }
     yaml += "    " + keys.polygon + ": [";
     for (const Point2& corner : place.polygon) {

@@ -17,7 +17,8 @@ struct PlaceKeys {
   std::string list;     ///< "bays": the one key of the file
   std::string id;       ///< "id"
   std::string polygon;  ///< "polygon": corners, [x, y] or {x: …, y: …} each, m in the map frame; may be closed
-  std::vector<std::string> words{};  ///< other keys, each may be missing
+  std::vector<std::string> words{};    ///< other keys, each may be missing
+  std::vector<std::string> numbers{};  ///< those of `words` that are written as numbers, for other programs
 };
 
 struct ListedPlace {

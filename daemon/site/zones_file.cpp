@@ -14,7 +14,8 @@
 namespace deltamap::daemon {
 namespace {
 
-const PlaceKeys kZoneKeys{"zones", "zoneId", "vertices", {"zoneType", "zoneDescriptor", "maximumSpeed"}};
+const PlaceKeys kZoneKeys{
+    "zones", "zoneId", "vertices", {"zoneType", "zoneDescriptor", "maximumSpeed"}, {"maximumSpeed"}};
 constexpr std::array<std::pair<std::string_view, ZoneKind>, 5> kZoneKinds{{{"FROZEN", ZoneKind::kFrozen},
                                                                            {"TEMPORARY", ZoneKind::kTemporary},
                                                                            {"IGNORE", ZoneKind::kIgnore},

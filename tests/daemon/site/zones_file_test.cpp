@@ -55,6 +55,7 @@ TEST_F(ZonesFile, IsReadAsWrittenAndSurvivesARecording) {
   EXPECT_EQ(zones[1].kind, ZoneKind::kSpeedLimit);
   EXPECT_DOUBLE_EQ(zones[1].most_speed_m_per_s, 0.3);
   EXPECT_EQ(zones_of_text(zones_as_yaml(zones), "again"), zones);
+  EXPECT_NE(zones_as_yaml(zones).find("    maximumSpeed: 0.3\n"), std::string::npos) << "a number, as VDA 5050 has it";
   const Site site{{{.id = "B4", .polygon = zones[1].polygon}}, zones};
   ASSERT_TRUE(site_of_text(text_of(site)));
   EXPECT_EQ(*site_of_text(text_of(site)), site);
