@@ -104,6 +104,20 @@ class DrawingTest(PageCase):
         self.assertTrue(browser.execute_script("return document.querySelector('#drawing').hidden && window.deltamap.model.drawing === null"))
         self.assertEqual(browser.errors(), [])
 
+    def test_a_zone_bears_its_id_on_the_map(self):
+        (self.daemon.place / "zones.yaml").write_text("zones:\n  - {zoneId: gate, zoneType: BLOCKED, vertices: [[5, 4], [7, 4], [7, 6], [5, 6]]}\n")
+        self.assertEqual(self.daemon.ctl("reload").returncode, 0)
+        browser = self.open()
+        browser.wait("window.deltamap.model.zones.length === 1")
+        written = browser.execute_async_script("""const [scales, done] = arguments, { model } = window.deltamap;
+            import("/page/zones.js").then(({ draw_zones }) => done(scales.map((scale) => {
+              const names = [], context = document.createElement("canvas").getContext("2d");
+              context.fillText = (...what) => names.push(what);
+              draw_zones(context, { scale, to_screen: (x, y) => [scale * x, -scale * y] }, model);
+              return names;
+            })))""", [20, 5])
+        self.assertEqual(written, [[["gate", 5 * 20 + 5, -6 * 20 + 14]], []])  # nearby alone, right of its upper left corner
+
     def test_what_the_daemon_refuses_is_told_and_stays_drawn(self):
         browser = self.open()
         self.begin(browser, "zone:")

@@ -8,7 +8,10 @@ import { clock, span_of } from "./time_text.js";
 
 const ASK_EVERY_MS = 2000;
 const ASK_WHERE_NONE_MS = 30000;
+const HURRIES_MS = 20000;  // a bay that was drawn is judged from the next scan on: the first answer may be without it
 const INK_OF = { full: "--red", partly: "--orange", empty: "--green", unknown: "--soft" };
+
+export const NAMED_FROM = 12;  // pixels a metre: below, names would hide what they name
 
 const by_id = (id) => document.getElementById(id);
 const dashes_of = (state, is_remembered = false) => (state === "unknown" || is_remembered ? [3, 3] : []);
@@ -20,6 +23,7 @@ export class Bays {
     this.on_pick = on_pick;
     this.on_news = on_news;
     this.asked = -Infinity;  // ms
+    this.hurries_until = -Infinity;  // ms
     model.bays = [];
     setInterval(() => this.ask(), ASK_EVERY_MS);
   }
@@ -31,8 +35,15 @@ export class Bays {
     by_id("bays-box").hidden = true;
   }
 
+  /// There are others now, or will be in a moment.
+  hurry() {
+    this.asked = -Infinity;
+    this.hurries_until = performance.now() + HURRIES_MS;
+    this.ask();
+  }
+
   async ask() {
-    const wait_ms = this.model.bays.length ? 0 : ASK_WHERE_NONE_MS;
+    const wait_ms = this.model.bays.length || performance.now() < this.hurries_until ? 0 : ASK_WHERE_NONE_MS;
     if (this.model.run || !this.model.status || document.hidden || performance.now() < this.asked + wait_ms) return;
     this.asked = performance.now();
     try {
@@ -41,7 +52,9 @@ export class Bays {
       this.model.bays = (await answer.json()).bays;
       this.list();
       this.on_news();
-    } catch { /* asked again in a moment */ }
+    } catch {
+      this.asked = -Infinity;  // again in a moment, where there was none before too
+    }
   }
 
   list() {
@@ -105,7 +118,7 @@ export function draw_bays(context, view, { bays, picked_bay }) {
     context.setLineDash(dashes_of(bay.state, bay.remembered));
     context.stroke();
     context.setLineDash([]);
-    if (view.scale < 12) continue;
+    if (view.scale < NAMED_FROM) continue;
     const [x, y] = view.to_screen(...middle_of(bay));
     context.fillStyle = ink_of("--text");
     context.textAlign = "center";

@@ -140,8 +140,7 @@ const bays = new Bays(model, (bay) => {
 
 const zones = new ZoneWatch(model, () => view.draw_soon());
 const drawing = new Drawing(view, model, control.row, () => {
-  bays.asked = -Infinity;
-  bays.ask();
+  bays.hurry();
   zones.ask();
 });
 

@@ -78,7 +78,7 @@ function share_bar(share) {
 function waiting_words(status) {
   if (!status.pose || status.mapping !== "on") return UNKNOWN;
   const blocks = status.temporary.standing_blocks + status.temporary.gone_blocks;
-  const differs = blocks ? `${whole(blocks)} blocks differ` : "nothing differs";
+  const differs = blocks ? `${whole(blocks)} ${blocks === 1 ? "block differs" : "blocks differ"}` : "nothing differs";
   return status.phase.open ? `${differs}; Δ-phase ${status.phase.number}, ${status.phase.stored_scans} scans` : differs;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Zones of the site, outlined on the map. Asked for every ten seconds; a run that is over has none.
 
-import { trace_polygon } from "./bays.js";
+import { NAMED_FROM, trace_polygon } from "./bays.js";
 import { ink_of } from "./canvas.js";
 
 const ASK_EVERY_MS = 10000;
@@ -32,6 +32,14 @@ export class ZoneWatch {
   }
 }
 
+/// Right of the highest corner, where no bay has its name.
+function write_name(context, view, { zoneId, vertices }, ink) {
+  const highest = vertices.reduce((one, other) => (other.y > one.y || (other.y === one.y && other.x < one.x) ? other : one));
+  const [x, y] = view.to_screen(highest.x, highest.y);
+  context.fillStyle = ink_of(ink);
+  context.fillText(zoneId, x + 5, y + 14);
+}
+
 export function draw_zones(context, view, { zones }) {
   for (const zone of zones ?? []) {
     const [, ink, dashes] = ZONES[zone.zoneType];
@@ -41,6 +49,7 @@ export function draw_zones(context, view, { zones }) {
     context.setLineDash(dashes);
     context.stroke();
     context.setLineDash([]);
+    if (view.scale >= NAMED_FROM) write_name(context, view, zone, ink);
   }
 }
 
