@@ -23,8 +23,14 @@ def poses(path):
             yield from (told for told in map(json.loads, lines) if told["type"] == "pose")
 
 
-for pose in poses(sys.argv[1] if len(sys.argv) > 1 else "/run/deltamap/poses.sock"):
-    if pose is None or not pose["may_drive_by_pose"] or pose["state"] != "tracking":
-        print("stand", flush=True)
-    else:
-        print(f"{pose['time']:.3f} {pose['x_m']:.3f} {pose['y_m']:.3f} {pose['heading_rad']:.4f}", flush=True)
+socket_of_daemon = sys.argv[1] if len(sys.argv) > 1 else "/run/deltamap/poses.sock"
+try:
+    for pose in poses(socket_of_daemon):
+        if pose is None or not pose["may_drive_by_pose"] or pose["state"] != "tracking":
+            print("stand", flush=True)
+        else:
+            print(f"{pose['time']:.3f} {pose['x_m']:.3f} {pose['y_m']:.3f} {pose['heading_rad']:.4f}", flush=True)
+except BrokenPipeError:  # who reads has seen enough
+    sys.exit()
+except OSError as error:
+    sys.exit(f"{socket_of_daemon}: {error.strerror}: does a daemon run that has it as poses.socket?")

@@ -6,6 +6,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
+usage="usage: ./dev demo [--for SECONDS] [--seed N] [--world FILE] [--out DIR] [--page PORT] [--pin CPU]"
 seconds="" seed=1 world=config/scenarios/demo.yaml out=build/demo bin=build/release/bin pin=() page=8484
 while (($#)); do
   case $1 in
@@ -15,7 +16,8 @@ while (($#)); do
     --out) out=$2; shift 2 ;;
     --page) page=$2; shift 2 ;;  # port of the live page; 0: none
     --pin) pin=(taskset -c "$2"); shift 2 ;;  # the daemon on one processor, as on the netbook
-    *) echo "usage: ./dev demo [--for SECONDS] [--seed N] [--world FILE] [--out DIR] [--page PORT] [--pin CPU]" >&2; exit 2 ;;
+    -h | --help) echo "$usage"; exit 0 ;;
+    *) echo "$usage" >&2; exit 2 ;;
   esac
 done
 
@@ -35,6 +37,10 @@ for _ in $(seq 50); do [[ -e $out/robot && -e $out/laser ]] && break; sleep 0.1;
 # The page asks for a token where it may drive.
 (umask 077; head -c 24 /dev/urandom | base64 | tr '+/' '-_' >"$out/token")
 
+# The page draws into these files.
+echo "bays:" >"$out/bays.yaml"
+echo "zones:" >"$out/zones.yaml"
+
 # A robot that nobody has switched on stands: here the one who called the demo does.
 (for _ in $(seq 150); do "$bin/deltamap" ctl --socket "$out/ctl.sock" drive wander >/dev/null 2>&1 && break; sleep 0.2; done) &
 echo "the robot drives ${seconds:+for $seconds s }in $world (seed $seed)$until; watch: $out" >&2
@@ -42,6 +48,7 @@ echo "the robot drives ${seconds:+for $seconds s }in $world (seed $seed)$until; 
 # Ended as systemd would: SIGTERM, and the map is saved.
 "${pin[@]}" "${limit[@]}" "$bin/deltamapd" --config config/simulation.yaml \
   --set robot.port="$out/robot" --set laser.port="$out/laser" --set map.file="$out/m0.yaml" --set map.store="$out/store.sqlite" --set control.socket="$out/ctl.sock" --set dashboard.port="$page" --set dashboard.token_file="$out/token" \
+  --set bays.file="$out/bays.yaml" --set zones.file="$out/zones.yaml" --set incidents.folder="$out/incidents" --set poses.socket="$out/poses.sock" \
   --set recording.file="$out/recording.pcapng" --set seed="$seed" --out "$out/run" &
 daemon=$!
 trap 'kill -TERM $daemon 2>/dev/null || true' INT TERM

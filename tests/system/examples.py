@@ -38,6 +38,12 @@ def check_pose_stream(place):
     return client
 
 
+def check_no_daemon(place):
+    """It says in a line that nobody listens there."""
+    client = subprocess.run([ROOT / "examples/pose_stream/pose_client.py", place / "nobody.sock"], capture_output=True, text=True)
+    check(client.returncode == 1 and client.stderr.startswith(f"{place}/nobody.sock: ") and "poses.socket" in client.stderr, client.stderr)
+
+
 def check_map(page, place):
     """The page and the file of `map.newest` are the same map; the robot stands on free floor, and outside nothing is known."""
     program = ROOT / "examples/planner_map/read_map.py"
@@ -83,6 +89,7 @@ def run(bin_folder, place, log):
                                           stdout=log, stderr=log))
         until(lambda: (place / "poses.sock").exists() and (place / "newest.yaml").exists() and read(f"{page}/metrics") is not None, "no daemon")
         processes.append(check_pose_stream(place))
+        check_no_daemon(place)
         check_map(page, place)
         check_metrics(page)
         processes[1].terminate()
