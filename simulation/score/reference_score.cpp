@@ -110,6 +110,17 @@ std::vector<StampedPose> reference_at(const std::vector<StampedPose>& trajectory
   return reference;
 }
 
+std::vector<StampedPose> reference_within(const std::vector<StampedPose>& trajectory,
+                                          const std::vector<StampedPose>& reference) {
+  if (trajectory.empty()) return {};
+  const auto [first, last] = std::minmax_element(trajectory.begin(), trajectory.end(), is_earlier);
+  const auto reach = duration_from_seconds(kMatchS);
+  const StampedPose begin{first->time - reach, {}};
+  const StampedPose end{last->time + reach, {}};
+  return {std::lower_bound(reference.begin(), reference.end(), begin, is_earlier),
+          std::upper_bound(reference.begin(), reference.end(), end, is_earlier)};
+}
+
 ReferenceScore reference_score(std::vector<StampedPose> trajectory, const std::vector<StampedPose>& reference) {
   std::stable_sort(trajectory.begin(), trajectory.end(), is_earlier);
   std::vector<double> errors_m;

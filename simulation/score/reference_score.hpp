@@ -23,6 +23,11 @@ namespace deltamap::simulation::score {
 /// What the truth of a simulation says at the times of a trajectory, within its own time.
 [[nodiscard]] std::vector<StampedPose> reference_at(const std::vector<StampedPose>& trajectory, const Truth& truth);
 
+/// The poses of a reference, in order of time, within the time of a trajectory: where a part of a drive was asked for,
+/// the rest of it is not lost. Empty where there is none.
+[[nodiscard]] std::vector<StampedPose> reference_within(const std::vector<StampedPose>& trajectory,
+                                                        const std::vector<StampedPose>& reference);
+
 struct ReferenceScore {
   std::size_t matched = 0;  ///< poses of the trajectory within 0.05 s of one of the reference; errors are of these
   std::size_t of = 0;       ///< poses of the reference

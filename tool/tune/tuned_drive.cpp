@@ -2,6 +2,7 @@
 #include "tool/tune/tuned_drive.hpp"
 
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
@@ -89,9 +90,11 @@ std::vector<std::pair<std::string, double>> TunedDrive::errors_of(const std::vec
   if (files_.way.kind == Kind::kNone) return numbers;
   const auto& way =
       files_.way.of_laser ? score::laser_poses(trajectory, settings.laser.session.robot_from_laser) : trajectory;
-  const score::ReferenceScore found = files_.way.kind == Kind::kReference
-                                          ? score::reference_score(way, reference_)
-                                          : score::reference_score(way, score::reference_at(trajectory, truth_));
+  const bool is_part = files_.from_s > 0.0 || std::isfinite(files_.to_s);
+  const auto reference = files_.way.kind == Kind::kSimulation ? score::reference_at(trajectory, truth_)
+                         : is_part                            ? score::reference_within(trajectory, reference_)
+                                                              : reference_;
+  const score::ReferenceScore found = score::reference_score(way, reference);
   if (found.matched == 0) refuse("pose");
   add(numbers, found);
   return numbers;

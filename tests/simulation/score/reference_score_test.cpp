@@ -48,6 +48,16 @@ TEST(ReferenceScore, LosesNothingWhereTheReferenceIsDenserThanTheScans) {
   EXPECT_NEAR(cut.coverage, 1.0 - (2.2 - 2 * 0.15) / 4.0, 0.01) << "where scans are missing there is no estimate";
 }
 
+TEST(ReferenceScore, OfAPartOfADriveLosesNothingOfTheRest) {
+  const std::vector<StampedPose> reference{at(0, 0), at(1, 1), at(2, 2), at(3, 3), at(4, 4)};
+  const std::vector<StampedPose> part{at(1.04, 1), at(2, 2), at(2.97, 3)};
+  EXPECT_DOUBLE_EQ(reference_score(part, reference).lost_share, 0.4);
+  EXPECT_EQ(reference_within(part, reference).size(), 3u);
+  EXPECT_DOUBLE_EQ(reference_score(part, reference_within(part, reference)).lost_share, 0.0);
+  EXPECT_TRUE(reference_within({at(9, 0)}, reference).empty());
+  EXPECT_TRUE(reference_within({}, reference).empty());
+}
+
 TEST(ReferenceScore, IsOfNoPoseWhereTheTimesDoNotMeet) {
   EXPECT_EQ(reference_score({at(100, 0)}, {at(0, 0)}).matched, 0u);
 }

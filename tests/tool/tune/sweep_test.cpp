@@ -75,6 +75,18 @@ class SweepTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(SweepTest, APartOfARecordingIsNotLostForItsRest) {
+  const auto lost_share = [&](const Words& part) {
+    Words words{"--seeds", "1", "--json"};
+    words.insert(words.end(), part.begin(), part.end());
+    const ToolRun scored = run("score", words);
+    EXPECT_EQ(scored.exit_code, 0) << scored.errors;
+    return Json::parse(scored.output).at(0).at("measures").at("lost_share").at("mean").get<double>();
+  };
+  EXPECT_EQ(lost_share({}), 0.0);
+  EXPECT_EQ(lost_share({"--from", "1", "--to", "3"}), 0.0);
+}
+
 TEST_F(SweepTest, RunsAreThoseOfReplayByteForByte) {
   const ToolRun swept = sweep({"--json"});
   ASSERT_EQ(swept.exit_code, 0) << swept.errors;
