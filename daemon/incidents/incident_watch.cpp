@@ -92,7 +92,7 @@ void RunWatch::watch_stops(const Telemetry& telemetry, Timestamp now, std::vecto
 
 void RunWatch::watch_map(const Telemetry& telemetry, Timestamp now, std::vector<IncidentEvent>& events) {
   const std::uint32_t revision = telemetry.newest_revision.value();
-  const std::uint32_t refused = telemetry.refused.value();
+  const std::uint32_t refused = telemetry.stale_refusals.value();
   if (revision_ != revision) {
     revision_ = revision;
     refused_before_ = refused;

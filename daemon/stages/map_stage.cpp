@@ -119,6 +119,7 @@ void MapStage::take(const MapWork& work) {
 void MapStage::tell_and_hand_on(const MapStep::Result& result) {
   if (!result.revision) {
     wiring_.telemetry.refused.add(1);
+    if (mapping::scan_set::leaves_map_stale(result.refusal)) wiring_.telemetry.stale_refusals.add(1);
     wiring_.log("map unchanged: phase=" + std::to_string(result.note.phase) + evidence_of(result.note) +
                 " verdict=refused reason=" + result.note.reason);
     return hand_on(result);

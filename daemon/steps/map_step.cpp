@@ -113,6 +113,7 @@ MapStep::Result MapStep::update(const ScanSet& set) {
   Result result{.revision = std::nullopt, .note = note_of(set, update.changes, newest_.map->geometry())};
   result.note.acceptance = update.acceptance;
   if (!update.accepted()) {
+    result.refusal = update.refusal;
     result.note.reason = name_of(update.refusal);
     return result;
   }

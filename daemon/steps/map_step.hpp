@@ -27,6 +27,7 @@ class MapStep {
   struct Result {
     std::optional<MapRevision> revision;
     ChangeNote note;
+    mapping::scan_set::Refusal refusal = mapping::scan_set::Refusal::kNone;  ///< of a set
     std::vector<std::uint32_t> provisional{};  ///< numbers of what is so from then on, oldest first
   };
   /// A set becomes a revision or is refused; an order takes back, in one revision, what was written since then and is

@@ -107,6 +107,7 @@ struct Telemetry {
   GateGauges gate;
   // map thread
   Gauge<std::uint32_t> newest_revision, refused;
+  Gauge<std::uint32_t> stale_refusals;  ///< of those refused: they leave the map stale
 };
 
 /// For planners, whoever drives: what of robot, laser or pose forbids to drive by the pose. Says nothing of motors, of

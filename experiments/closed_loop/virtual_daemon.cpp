@@ -159,10 +159,12 @@ struct VirtualDaemon::Process {
     const auto request = run->look_for_changes(tracked);
     const auto result = request ? run->update_map(*request) : std::nullopt;
     if (!result) return;
-    if (result->revision)
+    if (result->revision) {
       telemetry.newest_revision.set(result->revision->number);
-    else
+    } else {
       telemetry.refused.add(1);
+      if (mapping::scan_set::leaves_map_stale(result->refusal)) telemetry.stale_refusals.add(1);
+    }
   }
 
   VirtualDaemon& owner;

@@ -29,4 +29,22 @@ std::string_view name_of(Refusal refusal) {
   return "?";
 }
 
+bool leaves_map_stale(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kNone:
+    case Refusal::kNothingChanged:
+    case Refusal::kSetByOperator:
+    case Refusal::kZoned:
+      return false;
+    case Refusal::kTooFewScans:
+    case Refusal::kNoAlignment:
+    case Refusal::kNoMerge:
+    case Refusal::kLowAcceptance:
+    case Refusal::kImplausible:
+    case Refusal::kPoseInDoubt:
+      return true;
+  }
+  return true;
+}
+
 }  // namespace deltamap::mapping::scan_set

@@ -23,6 +23,9 @@ enum class Refusal : std::uint8_t {
   kZoned           ///< all that it would change lies in zones that are never written
 };
 [[nodiscard]] std::string_view name_of(Refusal refusal);
+/// Something may have changed, and the map does not say so; false where the map was found right, and where an operator
+/// or a zone forbids the change.
+[[nodiscard]] bool leaves_map_stale(Refusal refusal);
 
 struct MapUpdate {
   Refusal refusal = Refusal::kNone;

@@ -83,20 +83,28 @@ TEST(RunWatch, ThreeRefusalsWithoutARevisionBetweenThemAreAStreak) {
   Telemetry telemetry;
   RunWatch watch;
   telemetry.newest_revision.set(5);
-  telemetry.refused.set(7);
+  telemetry.stale_refusals.set(7);
   EXPECT_TRUE(watch.observe(telemetry, at_s(0.0)).empty());
-  telemetry.refused.set(9);
+  telemetry.stale_refusals.set(9);
   EXPECT_TRUE(watch.observe(telemetry, at_s(1.0)).empty());
   telemetry.newest_revision.set(6);
   EXPECT_TRUE(watch.observe(telemetry, at_s(2.0)).empty());
-  telemetry.refused.set(11);
+  telemetry.stale_refusals.set(11);
   EXPECT_TRUE(watch.observe(telemetry, at_s(3.0)).empty());
-  telemetry.refused.set(12);
+  telemetry.stale_refusals.set(12);
   const auto events = watch.observe(telemetry, at_s(4.0));
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].kind, IncidentKind::kRefusals);
-  telemetry.refused.set(20);
+  telemetry.stale_refusals.set(20);
   EXPECT_TRUE(watch.observe(telemetry, at_s(5.0)).empty()) << "one streak, one event";
+}
+
+TEST(RunWatch, RefusalsThatFoundTheMapRightAreNoStreak) {
+  Telemetry telemetry;
+  RunWatch watch;
+  EXPECT_TRUE(watch.observe(telemetry, at_s(0.0)).empty());
+  telemetry.refused.set(9);
+  EXPECT_TRUE(watch.observe(telemetry, at_s(1.0)).empty());
 }
 
 }  // namespace

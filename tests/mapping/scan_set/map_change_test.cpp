@@ -17,6 +17,14 @@ TEST(Refusal, HasANameOfItsOwn) {
   EXPECT_EQ(name_of(Refusal::kPoseInDoubt), "pose in doubt");
 }
 
+TEST(Refusal, LeavesTheMapStaleUnlessItWasFoundRightOrSomebodyForbidsTheChange) {
+  for (const Refusal none : {Refusal::kNone, Refusal::kNothingChanged, Refusal::kSetByOperator, Refusal::kZoned})
+    EXPECT_FALSE(leaves_map_stale(none)) << name_of(none);
+  for (const Refusal stale : {Refusal::kTooFewScans, Refusal::kNoAlignment, Refusal::kNoMerge, Refusal::kLowAcceptance,
+                              Refusal::kImplausible, Refusal::kPoseInDoubt})
+    EXPECT_TRUE(leaves_map_stale(stale)) << name_of(stale);
+}
+
 TEST(MapUpdate, IsAcceptedUnlessARefusalIsNamed) {
   EXPECT_TRUE(MapUpdate{}.accepted());
   MapUpdate update;
