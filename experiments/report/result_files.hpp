@@ -29,6 +29,8 @@ void expect_writable(const std::filesystem::path& folder);
 [[nodiscard]] std::string runs_csv(const Results& results);
 [[nodiscard]] std::string scans_csv(const ScanTable& scans);
 [[nodiscard]] std::string summary_json(const Results& results);
+/// "≥ 0.9, ≤ 0.98"
+[[nodiscard]] std::string text_of(const Target& target);
 [[nodiscard]] std::string page_html(const Results& results);
 
 /// NAME.csv, summary.json, index.html and, where wanted, scans/RUN.csv. Throws std::runtime_error naming the file.

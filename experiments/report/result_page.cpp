@@ -18,14 +18,6 @@ using reports::short_text;
 using reports::shortened;
 using reports::table_of;
 
-std::string text_of_target(const Target& target) {
-  std::string text;
-  if (target.least) text += "≥ " + short_text(*target.least);
-  if (target.least && target.most) text += ", ";
-  if (target.most) text += "≤ " + short_text(*target.most);
-  return text;
-}
-
 bool has_certainty(const Figure& figure) { return figure.certainty.has_value(); }
 
 std::string certainty_cells(const Figure& figure) {
@@ -46,7 +38,7 @@ std::string figures_html(const Report& report) {
     rows += "<tr>" + cell(figure.name) + cell(met, "td", figure.target ? met : nullptr) +
             cell(short_text(figure.value) + unit, "td", "number");
     if (has_runs) rows += certainty_cells(figure);
-    rows += figure.target ? cell(text_of_target(*figure.target), "td", "number") : cell("");
+    rows += figure.target ? cell(text_of(*figure.target), "td", "number") : cell("");
     rows += cell(shortened(figure.peers), "td", figure.peers.empty() ? nullptr : "others") + "</tr>\n";
   }
   std::vector<std::string> columns{"figure", "met", "measured", "95 % interval", "runs", "target", "others"};
@@ -73,6 +65,14 @@ std::string named(const Picture& picture) {
 }
 
 }  // namespace
+
+std::string text_of(const Target& target) {
+  std::string text;
+  if (target.least) text += "≥ " + short_text(*target.least);
+  if (target.least && target.most) text += ", ";
+  if (target.most) text += "≤ " + short_text(*target.most);
+  return text;
+}
 
 std::string page_html(const Results& results) {
   const Report& report = results.report;

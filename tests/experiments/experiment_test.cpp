@@ -201,6 +201,7 @@ TEST(Experiment, DoesOnlyTheRunsThatAreAskedFor) {
 
 TEST(Target, IsMetOnlyByAMeasuredFigureWithinItsLimits) {
   const experiments::Target target{.least = 0.9, .most = 0.98};
+  EXPECT_EQ(experiments::text_of(target), "≥ 0.9, ≤ 0.98");
   EXPECT_TRUE(target.is_met_by(0.95));
   EXPECT_FALSE(target.is_met_by(0.89));
   EXPECT_FALSE(target.is_met_by(1.0));

@@ -61,7 +61,9 @@ void print_summary(const experiments::Results& results) {
   for (const experiments::Figure& figure : results.report.figures) {
     std::cout << std::left << std::setw(64) << figure.name << ' ' << std::setw(10) << experiments::text_of(figure.value)
               << ' ' << figure.unit;
-    if (figure.target) std::cout << (figure.target->is_met_by(figure.value) ? "  met" : "  missed");
+    if (figure.target)
+      std::cout << (figure.target->is_met_by(figure.value) ? "  met: " : "  missed: ")
+                << experiments::text_of(*figure.target);
     std::cout << '\n';
   }
 }
@@ -139,7 +141,7 @@ int run_lab(int argc, const char* const* argv) {
   command.set_version_flag("--version", "deltamap-lab " + daemon::version_text());
   const auto given = std::make_shared<ExperimentOptions>();
   given->options.scenarios = scenario_folder();
-  command.add_option("name", given->name, names_of_experiments())->required();
+  command.add_option("NAME", given->name, names_of_experiments())->required();
   command.add_option("--out", given->out, "folder for NAME.csv, summary.json and index.html")->required();
   add_extent(command, *given);
   add_inputs(command, *given);
