@@ -210,7 +210,7 @@ void run_calibration(CalibrateOptions& options) {
 void add_calibrate_motion(CLI::App& calibrate) {
   auto* command = calibrate.add_subcommand("motion", "how far the wheels of a recording can be trusted");
   auto options = std::make_shared<CalibrateOptions>();
-  command->add_option("recording", options->recording, "pcapng of both ports")->required();
+  command->add_option("RECORDING", options->recording, "pcapng of both ports")->required();
   command->add_option("--map", options->map, "where it was recorded, map_server YAML")->required();
   command->add_option("--config", options->config, "settings, YAML");
   command->add_option("--initial-pose", options->initial_pose,

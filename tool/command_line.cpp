@@ -47,29 +47,36 @@ std::optional<std::string> nearest_command(const CLI::App& parent, const std::st
   return std::nullopt;
 }
 
-/// "ctl: unknown command 'stauts' (nearest command status)". Nothing where no word is left over, or no command belongs
-/// there.
-std::optional<std::string> unknown_command(const CLI::App& app) {
+/// "ctl: unknown command 'stauts' (nearest command status)", or "ctl: which command? status, pause, …". Nothing where
+/// it is no command that is missing.
+std::optional<std::string> wrong_command(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_name() != "RequiredError") return std::nullopt;
   const CLI::App* parent = &app;
   std::string path;
   while (!parent->get_subcommands().empty()) {
     parent = parent->get_subcommands().front();
-    path += (path.empty() ? "" : " ") + parent->get_name();
+    path += parent->get_name() + " ";
   }
+  if (commands_of(*parent).empty()) return std::nullopt;
+  if (!path.empty()) path.back() = ':';
+  if (!path.empty()) path += ' ';
   const std::vector<std::string> words = app.remaining(true);
   const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
   const auto word = std::find_if_not(words.begin(), words.end(), is_option);
-  if (word == words.end()) return std::nullopt;
-  if (commands_of(*parent).empty()) return std::nullopt;
-  const auto nearest = nearest_command(*parent, *word);
-  return (path.empty() ? "" : path + ": ") + "unknown command '" + *word + "'" +
-         (nearest ? " (nearest command " + *nearest + ")" : "");
+  if (word != words.end()) {
+    const auto nearest = nearest_command(*parent, *word);
+    return path + "unknown command '" + *word + "'" + (nearest ? " (nearest command " + *nearest + ")" : "");
+  }
+  if (std::string_view(error.what()) != CLI::RequiredError::Subcommand(1).what()) return std::nullopt;
+  std::string known;
+  for (const std::string& name : names_of(commands_of(*parent))) known += (known.empty() ? "" : ", ") + name;
+  return path + "which command? " + known;
 }
 
 /// Prints it, and returns the exit code.
 int refuse(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
-  const auto unknown = error.get_name() == "RequiredError" ? unknown_command(app) : std::nullopt;
-  const CLI::ParseError told = unknown ? CLI::ParseError{*unknown, CLI::ExitCodes::RequiredError} : error;
+  const auto wrong = wrong_command(app, error);
+  const CLI::ParseError told = wrong ? CLI::ParseError{*wrong, CLI::ExitCodes::RequiredError} : error;
   if (app.exit(told) == 0) return 0;
   tell_in_json(argc, argv, told.what());
   return 2;

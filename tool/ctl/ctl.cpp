@@ -104,7 +104,7 @@ void add_status_command(CLI::App& ctl, const std::shared_ptr<CtlOptions>& option
 void add_log_level(CLI::App& ctl, const std::shared_ptr<CtlOptions>& options) {
   CLI::App& log_level = *ctl.add_subcommand("log-level", "what goes into the log from now on, until the next start");
   const std::vector<std::string> names(daemon::kLogLevelNames.begin(), daemon::kLogLevelNames.end());
-  log_level.add_option("level", options->level, "trace, debug, info, warn or error")
+  log_level.add_option("LEVEL", options->level, "trace, debug, info, warn or error")
       ->required()
       ->check(CLI::IsMember(names));
   log_level.callback([options] {
@@ -187,7 +187,7 @@ void add_ctl(CLI::App& app) {
   add_mark(ctl, options);
   add_plain(ctl, options, "incidents", Kind::kIncidents, "which incidents are kept");
   CLI::App& record = *ctl.add_subcommand("record", "stop the recording of this run, or let it go on behind a gap");
-  record.add_option("mode", options->mode, "start or stop")->required()->check(CLI::IsMember({"start", "stop"}));
+  record.add_option("MODE", options->mode, "start or stop")->required()->check(CLI::IsMember({"start", "stop"}));
   record.callback([options] {
     ask(*options, Request{options->mode == "start" ? Kind::kRecordStart : Kind::kRecordStop, {}});
   });
@@ -196,7 +196,7 @@ void add_ctl(CLI::App& app) {
       ->required();
   relocalize.callback([options] { ask(*options, Request{Kind::kRelocalize, pose_of(options->pose)}); });
   CLI::App& drive = *ctl.add_subcommand("drive", "let the robot drive, or make it stand");
-  drive.add_option("mode", options->mode, "off or wander")->required()->check(CLI::IsMember({"off", "wander"}));
+  drive.add_option("MODE", options->mode, "off or wander")->required()->check(CLI::IsMember({"off", "wander"}));
   drive.callback([options] {
     ask(*options, Request{options->mode == "off" ? Kind::kDriveOff : Kind::kDriveWander, {}});
   });

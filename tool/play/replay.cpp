@@ -75,7 +75,7 @@ void replay_or_play(ReplayOptions& options) {
 void add_replay(CLI::App& app) {
   auto* command = app.add_subcommand("replay", "the whole pipeline on recorded bytes, as fast as it can");
   auto options = std::make_shared<ReplayOptions>();
-  command->add_option("recording", options->job.recording, "pcapng of both ports")->required();
+  command->add_option("RECORDING", options->job.recording, "pcapng of both ports")->required();
   command->add_option("--map", options->job.map, "M_0, map_server YAML; required, as is --out, but with --to-pty");
   command->add_option("--config", options->config, "settings, YAML; as delivered where it is not given");
   command->add_option("--out", options->job.out, "folder for trajectory.tum, map, changes.jsonl, report.json");

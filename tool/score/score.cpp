@@ -177,7 +177,7 @@ void add_simulation_options(CLI::App& command, ScoreOptions& options) {
 void add_score(CLI::App& app) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App& command = *app.add_subcommand("score", "what runs are worth: against the true way, or without any");
-  command.add_option("runs", options->runs.recordings, "folders of runs, or recordings, which are replayed");
+  command.add_option("RUN", options->runs.recordings, "folders of runs, or recordings, which are replayed");
   command.add_option("--config", options->runs.config, "settings of the replays; as delivered where it is not given");
   command.add_option("--seeds", options->runs.seeds, "each recording with seeds 1 to N (default 4)")
       ->check(CLI::Range(1, 10000));

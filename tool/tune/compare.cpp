@@ -55,7 +55,7 @@ void run_compare(const CompareOptions& options) {
 void add_compare(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App& command = *app.add_subcommand("compare", "recordings replayed with several configurations: is one better");
-  command.add_option("recordings", options->common.recordings, "pcapng of both ports, one or several")->required();
+  command.add_option("RECORDING", options->common.recordings, "pcapng of both ports, one or several")->required();
   command
       .add_option("--config", options->configs,
                   "settings, YAML; two or more: the first is what the others are held against")

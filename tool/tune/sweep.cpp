@@ -98,7 +98,7 @@ void run_sweep(const SweepOptions& options) {
 void add_sweep(CLI::App& app) {
   auto options = std::make_shared<SweepOptions>();
   CLI::App& command = *app.add_subcommand("sweep", "recordings replayed with every value of some keys: which is best");
-  command.add_option("recordings", options->common.recordings, "pcapng of both ports, one or several")->required();
+  command.add_option("RECORDING", options->common.recordings, "pcapng of both ports, one or several")->required();
   command.add_option("--config", options->common.config, "settings, YAML; as delivered where it is not given");
   command.add_option("--param", options->params, "key=a:b:n, key=a:b:n:log or key=v,v; repeatable: every combination")
       ->required()
