@@ -55,9 +55,8 @@ std::string bay_row(const BaysJson& bay) {
 std::string bays_table(const std::string& list_line) {
   const auto list = BaysJson::parse(list_line);
   std::string text;
-  if (!list.at("bays").empty()) {
-    text = "bay           state     share  conf      seen  since                 what\n";
-  }
+  if (list.at("bays").empty()) return "no bay: the file that 'bays.file' of the settings names lists them\n";
+  text = "bay           state     share  conf      seen  since                 what\n";
   std::map<std::string, std::size_t> states;
   for (const BaysJson& bay : list.at("bays")) {
     text += bay_row(bay);

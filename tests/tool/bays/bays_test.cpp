@@ -108,6 +108,8 @@ TEST(BaysTable, TellsAgesAndCounts) {
             "B4            full       0.93  0.80      40 s  2025-11-24T16:00:00Z  Row B, thing 12, thing 13\n"
             "B5            unknown       -  0.00     never  -\n"
             "2 bays: 1 full, 1 unknown\n");
+  EXPECT_EQ(bays_table(R"({"ok":true,"time":1764000100.0,"bays":[]})"),
+            "no bay: the file that 'bays.file' of the settings names lists them\n");
 }
 
 }  // namespace
