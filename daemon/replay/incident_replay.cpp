@@ -15,6 +15,8 @@ ReplayJob incident_job(const std::filesystem::path& folder) {
   job.recording = folder / kIncidentRecording;
   job.map = folder / kIncidentMap;
   job.settings = read_settings(folder / kIncidentSettings, {});
+  job.settings.bays.file.clear();  // the recording holds what was in force; the files are another machine's, or edited
+  job.settings.zones.file.clear();
   return job;
 }
 

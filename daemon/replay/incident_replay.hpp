@@ -11,7 +11,8 @@
 
 namespace deltamap::daemon {
 
-/// With the incident's own recording, map and settings, and no `out`. Throws as read_settings() does.
+/// With the incident's own recording, map and settings, and no `out`; bays and zones are those of the recording. Throws
+/// as read_settings() does.
 [[nodiscard]] ReplayJob incident_job(const std::filesystem::path& folder);
 
 /// The first of its events that a replay can meet: lost or kidnapped; null: none.

@@ -65,7 +65,9 @@ fs::path folder_of(const IncidentOptions& options, const fs::path& named) {
 
 void list(const IncidentOptions& options) {
   std::error_code error;
-  if (!fs::is_directory(options.folder, error)) throw std::runtime_error(options.folder.string() + ": is no folder");
+  if (!fs::is_directory(options.folder, error))
+    throw std::runtime_error(options.folder.string() +
+                             ": is no folder: `deltamap incident list FOLDER` with the daemon's 'incidents.folder'");
   const std::vector<daemon::StoredIncident> all = daemon::incidents_in(options.folder);
   if (options.as_json) {
     std::cout << daemon::json_of(all) << '\n';
@@ -86,7 +88,10 @@ void show(const IncidentOptions& options) {
 std::string words_of_replay(const daemon::Incident& incident, const daemon::IncidentReplay& replay) {
   const std::string met = "the replay lost its pose " + counted(replay.losses.size(), "time") + ", ";
   const daemon::IncidentEvent* live = loss_of(incident);
-  if (live == nullptr) return met + "the live run did not: " + std::string(name_of(incident.events.front().kind));
+  if (live == nullptr) {
+    return (replay.losses.empty() ? "neither the live run nor the replay lost its pose" : met + "the live run never") +
+           " (kept for: " + std::string(name_of(incident.events.front().kind)) + ")";
+  }
   const std::string began = "the live run: " + std::string(name_of(live->kind)) + " at " + utc_text(live->time) + "; ";
   if (!replay.late_s) return began + met + "never of this kind";
   char text[96];
@@ -153,11 +158,11 @@ void pin(const IncidentOptions& options, bool is_pinned) {
 }
 
 void add_to_many(CLI::App& command, const std::shared_ptr<IncidentOptions>& options) {
-  command.add_option("incidents", options->incidents, "their folders, or names in --folder")->required();
+  command.add_option("INCIDENT", options->incidents, "their folders, or names in --folder")->required();
 }
 
 void add_to_one(CLI::App& command, const std::shared_ptr<IncidentOptions>& options) {
-  command.add_option("incident", options->incident, "its folder, or its name in --folder")->required();
+  command.add_option("INCIDENT", options->incident, "its folder, or its name in --folder")->required();
 }
 
 }  // namespace
@@ -169,7 +174,7 @@ void add_incident(CLI::App& app) {
   incident.add_option("--folder", options->folder, "incidents.folder of the daemon (/var/lib/deltamap/incidents)");
   incident.add_flag("--json", options->as_json, "of list, show and replay: JSON");
   CLI::App& listing = *incident.add_subcommand("list", "all of a folder, oldest first");
-  listing.add_option("where", options->folder, "in place of --folder");
+  listing.add_option("FOLDER", options->folder, "in place of --folder");
   listing.callback([options] { list(*options); });
   CLI::App& showing = *incident.add_subcommand("show", "what happened, when, where, and what to do");
   add_to_one(showing, options);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/daemon/incident_drive.hpp"
@@ -50,7 +51,20 @@ TEST_F(IncidentTool, ListsAndShowsWhatIsKept) {
 TEST_F(IncidentTool, ReplaysAndTellsWhetherItMeetsTheSame) {
   const auto done = run_deltamap({"incident", "replay", stored_.folder.string()});
   EXPECT_EQ(done.exit_code, 0) << done.errors;
-  EXPECT_EQ(done.output, "the replay lost its pose 0 times, the live run did not: mark\n");
+  EXPECT_EQ(done.output, "neither the live run nor the replay lost its pose (kept for: mark)\n");
+}
+
+TEST_F(IncidentTool, ReplaysWhereTheFilesOfItsBaysAndZonesAreNot) {
+  const std::string settings = stored_.folder / daemon::kIncidentSettings;
+  std::string text = test::content_of(settings);
+  for (const std::string key : {"\nbays:\n  file: ", "\nzones:\n  file: "}) {
+    const std::size_t at = text.find(key);
+    ASSERT_NE(at, std::string::npos) << text;
+    text.insert(at + key.size(), "/nowhere/site.yaml  # ");
+  }
+  std::ofstream{settings} << text;
+  const auto done = run_deltamap({"incident", "replay", stored_.folder.string()});
+  EXPECT_EQ(done.exit_code, 0) << done.errors;
 }
 
 TEST_F(IncidentTool, PacksOneFileThatTarReads) {
@@ -117,7 +131,8 @@ TEST_F(IncidentTool, WhatIsNoIncidentIsNamed) {
   EXPECT_EQ(run_deltamap({"incident", "pack", folder()}).errors,
             "deltamap: " + folder() + ": is no incident: no incident.json\n");
   EXPECT_EQ(run_deltamap({"incident", "list", folder() + "/none"}).errors,
-            "deltamap: " + folder() + "/none: is no folder\n");
+            "deltamap: " + folder() +
+                "/none: is no folder: `deltamap incident list FOLDER` with the daemon's 'incidents.folder'\n");
 }
 
 }  // namespace
