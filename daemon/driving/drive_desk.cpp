@@ -11,7 +11,7 @@ constexpr std::chrono::seconds kRequestLife{1};  // an older request to drive ha
 constexpr double kHandLifeS = 0.25;              // of a command by hand; ends within 0.3 s, a safety period later
 constexpr std::chrono::milliseconds kRobotSilence{500};  // five controller cycles; a silent robot may not hear us
 
-const std::string kNeverDrives = "'navigation.mode' is off: this daemon never drives";
+const std::string kNeverDrives = "'navigation.mode' is off: this daemon never drives (set it to wander, and restart)";
 
 }  // namespace
 

@@ -105,7 +105,7 @@ std::string incidents_json(const fs::path& folder) {
 
 std::string incidents_reply(const IncidentSettings& settings) {
   if (settings.folder.empty())
-    return line({{"ok", false}, {"error", "'incidents.folder' is not set: nothing is kept"}});
+    return line({{"ok", false}, {"error", "'incidents.folder' is not set: nothing is kept (set it, and restart)"}});
   const std::vector<StoredIncident> all = incidents_in(settings.folder);
   std::string text = counted(all.size(), "incident") + " in " + settings.folder;
   for (const StoredIncident& stored : all) text += "\n" + line_of(stored);

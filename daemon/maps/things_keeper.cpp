@@ -67,7 +67,8 @@ std::vector<CellChange> ThingsKeeper::undoing(std::uint32_t thing, const Occupan
   if (!changes.empty()) return changes;
   std::string revisions;
   for (const std::uint32_t revision : found->revisions) revisions += " " + std::to_string(revision);
-  throw std::runtime_error("nothing is left to take back of " + name + " but whole revisions:" + revisions);
+  throw std::runtime_error("no cell holds any more what " + name +
+                           " has written; `undo K` takes its whole revisions:" + revisions);
 }
 
 void ThingsKeeper::retry(Timestamp now) {

@@ -16,7 +16,7 @@ TEST_F(DriveTest, WhereTheSettingsSayOffNothingEnablesTheMotors) {
   run([&](test::SimulatedPorts& ports) {
     const Json refused = asked({Request::Kind::kDriveWander, {}});
     EXPECT_EQ(refused["ok"], false);
-    EXPECT_EQ(refused["error"], "'navigation.mode' is off: this daemon never drives");
+    EXPECT_EQ(refused["error"], "'navigation.mode' is off: this daemon never drives (set it to wander, and restart)");
     EXPECT_EQ(asked({Request::Kind::kDriveOff, {}})["ok"], true);
     const int scan = status()["localized"];
     EXPECT_TRUE(reached_scan(scan + 10));

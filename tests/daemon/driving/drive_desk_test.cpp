@@ -231,7 +231,8 @@ TEST(DriveDesk, ForgetsForPlannersAsWellWhatTheLaserHasCeasedToSee) {
   const control::CommandOutcome outcome = says_drive();
   EXPECT_TRUE(outcome.done);
   EXPECT_EQ(outcome.message,
-            "it waits no more: laser sees nothing; 'navigation.mode' is off: this daemon never drives");
+            "it waits no more: laser sees nothing; 'navigation.mode' is off: this daemon never drives (set it to "
+            "wander, and restart)");
   desk.pass(1.0);
   EXPECT_TRUE(may_drive_by_pose(desk.telemetry));
 }
@@ -280,7 +281,9 @@ TEST(DriveDesk, EndsWhatWaitsForAPersonByTheWordDriveAloneWhereItNeverDrives) {
   EXPECT_FALSE(desk.desk.let_drive({true, 1, desk.now() - std::chrono::seconds{2}}, desk.now()).done);
   const control::CommandOutcome outcome = says(true);
   EXPECT_TRUE(outcome.done);
-  EXPECT_EQ(outcome.message, "it waits no more: stalled; 'navigation.mode' is off: this daemon never drives");
+  EXPECT_EQ(
+      outcome.message,
+      "it waits no more: stalled; 'navigation.mode' is off: this daemon never drives (set it to wander, and restart)");
   desk.pass(1.0);
   EXPECT_TRUE(may_drive_by_pose(desk.telemetry));
   EXPECT_FALSE(desk.is_driven());

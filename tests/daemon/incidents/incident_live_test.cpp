@@ -50,8 +50,10 @@ TEST_F(IncidentLiveTest, AMarkIsKeptAndRepeatsAYoungRunBitForBit) {
 TEST_F(IncidentLiveTest, WithoutAFolderAMarkIsRefusedWithWhatToSet) {
   settings_.incidents.folder.clear();
   (void)run_live(0ms, [&](const Pipeline&) {
-    EXPECT_EQ(asked({Kind::kMark, {}})["error"], "'incidents.folder' is not set: nothing is kept");
-    EXPECT_EQ(asked({Kind::kIncidents, {}})["error"], "'incidents.folder' is not set: nothing is kept");
+    EXPECT_EQ(asked({Kind::kMark, {}})["error"],
+              "'incidents.folder' is not set: nothing is kept (set it, and restart)");
+    EXPECT_EQ(asked({Kind::kIncidents, {}})["error"],
+              "'incidents.folder' is not set: nothing is kept (set it, and restart)");
   });
 }
 

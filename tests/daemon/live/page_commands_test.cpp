@@ -390,7 +390,8 @@ TEST_F(PageCommandsTest, WhereTheSettingsSayOffNobodyTakesIt) {
   settings_.navigation.mode = navigation::DriveMode::kOff;
   run([&](test::SimulatedPorts& ports) {
     Hands hands = this->hands();
-    EXPECT_EQ(hands.first()["why"], "'navigation.mode' is off: this daemon never drives");
+    EXPECT_EQ(hands.first()["why"],
+              "'navigation.mode' is off: this daemon never drives (set it to wander, and restart)");
     EXPECT_FALSE(moves(ports));
   });
 }

@@ -95,7 +95,8 @@ TEST_F(ThingsKeeperTest, OfWhatHasLeftOnlyWholeRevisionsCanBeUndone) {
     (void)keeper.undoing(1, site.map);
     ADD_FAILURE() << "there is nothing to set back";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "nothing is left to take back of thing 1 but whole revisions: 1 2");
+    EXPECT_STREQ(error.what(),
+                 "no cell holds any more what thing 1 has written; `undo K` takes its whole revisions: 1 2");
   }
 }
 
