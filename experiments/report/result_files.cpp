@@ -97,6 +97,12 @@ std::string scans_csv(const ScanTable& scans) {
   return csv;
 }
 
+std::string_view verdict_on(const Figure& figure) {
+  if (!figure.target) return "";
+  if (std::isnan(figure.value)) return "nothing measured";
+  return figure.target->is_met_by(figure.value) ? "met" : "missed";
+}
+
 std::string summary_json(const Results& results) {
   Json summary{{"experiment", results.name}};
   daemon::add_provenance(summary, results.settings);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/settings/settings.hpp"
@@ -22,6 +23,9 @@ struct Results {
   Report report;
   daemon::Settings settings{};  ///< of the localizer and of mapping; an experiment may set some of them itself
 };
+
+/// "met", "missed" or "nothing measured"; empty: nothing was promised of it.
+[[nodiscard]] std::string_view verdict_on(const Figure& figure);
 
 /// Throws std::runtime_error where nothing can be written there.
 void expect_writable(const std::filesystem::path& folder);

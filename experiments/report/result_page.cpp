@@ -34,8 +34,8 @@ std::string figures_html(const Report& report) {
   for (const Figure& figure : report.figures) {
     const std::string unit = std::isnan(figure.value) || figure.unit.empty() ? "" : " " + figure.unit;
     // Whether it is met stands in front: a narrow screen shows it without scrolling.
-    const char* met = !figure.target ? "" : figure.target->is_met_by(figure.value) ? "met" : "missed";
-    rows += "<tr>" + cell(figure.name) + cell(met, "td", figure.target ? met : nullptr) +
+    const std::string verdict{verdict_on(figure)};
+    rows += "<tr>" + cell(figure.name) + cell(verdict, "td", figure.target ? verdict.c_str() : nullptr) +
             cell(short_text(figure.value) + unit, "td", "number");
     if (has_runs) rows += certainty_cells(figure);
     rows += figure.target ? cell(text_of(*figure.target), "td", "number") : cell("");

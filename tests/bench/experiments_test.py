@@ -51,6 +51,13 @@ class Writer(unittest.TestCase):
         self.write()
         self.assertIn("| a \\| b |  | nothing to measure |  |  |", self.text())
 
+    def test_tells_a_target_for_which_nothing_was_measured_from_one_that_was_missed(self):
+        self.revision = "aaa1"
+        self.measured["two"] = (None, False)
+        self.assertEqual(self.write(), 1)
+        self.assertIn("| error | paper < 0.5 | nothing to measure | ≤ 0.05 m | **nothing measured** |", self.text())
+        self.assertNotIn("missed", self.text())
+
     def test_keeps_the_others_with_their_revision_where_one_is_done_anew(self):
         self.revision = "aaa1"
         self.write()

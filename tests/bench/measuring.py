@@ -23,8 +23,11 @@ def median(values):
     return sorted(values)[len(values) // 2]
 
 
+NOTHING = "nothing to measure"
+
+
 def number(value):
-    return "nothing to measure" if value is None else "%.4g" % value
+    return NOTHING if value is None else "%.4g" % value
 
 
 def with_unit(value, unit):
@@ -44,6 +47,8 @@ def row_of_figure(figure, prefix=""):
 
 
 def mark(row):
+    if row["met"] is False and row["ours"] == NOTHING:
+        return "**nothing measured**"
     return {True: "met", False: "**missed**", None: ""}[row["met"]]
 
 

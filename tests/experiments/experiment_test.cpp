@@ -208,6 +208,16 @@ TEST(Target, IsMetOnlyByAMeasuredFigureWithinItsLimits) {
   EXPECT_FALSE(target.is_met_by(std::nan("")));
 }
 
+TEST(Target, IsToldApartWhereNothingWasMeasured) {
+  const auto verdict = [](double value) {
+    return experiments::verdict_on({.name = "share", .value = value, .target = experiments::Target{.least = 0.9}});
+  };
+  EXPECT_EQ(verdict(0.95), "met");
+  EXPECT_EQ(verdict(0.89), "missed");
+  EXPECT_EQ(verdict(std::nan("")), "nothing measured");
+  EXPECT_EQ(experiments::verdict_on({.name = "share", .value = 0.95}), "");
+}
+
 /// A run whose scans have these values in one column.
 experiments::Outcome run_of(const std::string& place, std::initializer_list<double> values) {
   experiments::Outcome run{{{"place", place}}, {}, experiments::ScanTable{{"error_m"}}};

@@ -62,8 +62,7 @@ void print_summary(const experiments::Results& results) {
     std::cout << std::left << std::setw(64) << figure.name << ' ' << std::setw(10) << experiments::text_of(figure.value)
               << ' ' << figure.unit;
     if (figure.target)
-      std::cout << (figure.target->is_met_by(figure.value) ? "  met: " : "  missed: ")
-                << experiments::text_of(*figure.target);
+      std::cout << "  " << experiments::verdict_on(figure) << ": " << experiments::text_of(*figure.target);
     std::cout << '\n';
   }
 }
