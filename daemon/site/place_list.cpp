@@ -13,6 +13,7 @@
 #include "core/files/shortest_text.hpp"
 #include "core/files/yaml_tree.hpp"
 #include "daemon/settings/reader/text_character.hpp"
+#include "daemon/settings/reader/yaml_text.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -105,7 +106,9 @@ std::string in_mm(double length_m) { return yaml_number(std::round(1e3 * length_
 
 }  // namespace
 
-void require_utf8(std::string_view text, const std::string& file) {
+void require_text(std::string_view text, const std::string& file) {
+  if (const auto binary = binary_byte(text))
+    throw std::runtime_error(file + ": line " + std::to_string(binary->line) + ": " + binary->what);
   int line = 1;
   for (std::size_t at = 0; at < text.size();) {
     const auto character = character_at(text, at);
@@ -125,16 +128,16 @@ Polygon without_repeated_corners(Polygon polygon) {
 }
 
 std::vector<ListedPlace> places_in(std::string_view yaml, const std::string& file, const PlaceKeys& keys) {
-  require_utf8(yaml, file);
+  require_text(yaml, file);
   YAML::Node root;
   try {
     root = only_yaml_tree(std::string(yaml));
   } catch (const YAML::Exception& error) {
     throw std::runtime_error(file + ": " + placed_meaning_of(error, std::string(yaml)));
   }
-  const auto expected = [&] {
-    refuse_place(root, file, "must hold '" + keys.list + ":' and a list, and nothing else");
-  };
+  const std::string wanted = "must hold '" + keys.list + ":' and a list, and nothing else";
+  const auto expected = [&] { refuse_place(root, file, wanted); };
+  if (root.IsNull()) throw std::runtime_error(file + ": holds nothing yet: it " + wanted);
   if (!root.IsMap() || root.size() != 1 || !root[keys.list]) expected();
   const YAML::Node list = root[keys.list];
   if (list.IsNull()) return {};

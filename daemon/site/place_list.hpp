@@ -30,8 +30,8 @@ struct ListedPlace {
   friend bool operator==(const ListedPlace&, const ListedPlace&) = default;
 };
 
-/// Throws std::runtime_error "FILE: line N: a character that is not UTF-8 …".
-void require_utf8(std::string_view text, const std::string& file);
+/// Throws std::runtime_error "FILE: line N: no text file: it has the byte 00h", or "… a character that is not UTF-8 …".
+void require_text(std::string_view text, const std::string& file);
 
 /// Without corners that repeat the one before: GeoJSON, WKT and Shapely close an outline by its first, and CAD programs
 /// double some. May leave fewer than three.

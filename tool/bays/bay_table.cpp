@@ -133,7 +133,7 @@ Bay bay_of(const TableRow& row, const std::optional<BaySize>& size) {
 
 ImportedBays bays_of_csv(const std::string& text, const std::string& name, const std::optional<BaySize>& size) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  daemon::require_utf8(text, name);
+  daemon::require_text(text, name);
   const std::string table = text.substr(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
   if (table.empty()) throw std::runtime_error(name + ": is empty");
   const char separator = table.substr(0, table.find('\n')).find(';') == std::string::npos ? ',' : ';';

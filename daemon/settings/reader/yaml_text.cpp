@@ -203,7 +203,8 @@ class Lines {
   bool is_second_ = false;
 };
 
-/// The first byte that no text has, or line ends that the YAML reader does not recognize.
+}  // namespace
+
 std::optional<TextProblem> binary_byte(std::string_view yaml) {
   if (yaml.starts_with("\xFF\xFE") || yaml.starts_with("\xFE\xFF"))
     return TextProblem{1, 1, "UTF-16: save it as UTF-8"};
@@ -224,8 +225,6 @@ std::optional<TextProblem> binary_byte(std::string_view yaml) {
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 YamlText yaml_text(std::string_view yaml) {
   if (const auto binary = binary_byte(yaml)) return {{*binary}, {}};

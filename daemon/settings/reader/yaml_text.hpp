@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,9 @@ struct TextProblem {
   int column = 1;  ///< in bytes, from 1
   std::string what;
 };
+
+/// The first byte that no text has, or line ends that no reader of lines recognizes.
+[[nodiscard]] std::optional<TextProblem> binary_byte(std::string_view text);
 
 /// A line as it may be handed to a YAML reader.
 struct YamlLine {

@@ -90,6 +90,21 @@ TEST_F(BaysFile, IsReadStrictly) {
   EXPECT_EQ(complaint("bays:\n  - 7\n"), "line 2: an entry of 'bays' must hold keys and values");
 }
 
+TEST_F(BaysFile, OfNothingNoLineIsNamed) {
+  const std::string nothing = "holds nothing yet: it must hold 'bays:' and a list, and nothing else";
+  for (const char* yaml : {"", "\n", "# bays of hall 2\n\n", "---\n", "---\n# none\n...\n"})
+    EXPECT_EQ(complaint(yaml), nothing) << yaml;
+}
+
+TEST_F(BaysFile, WhatIsNoTextIsToldAsThat) {
+  using namespace std::string_literals;
+  EXPECT_EQ(complaint("\0bays: []\n"s), "line 1: no text file: it has the byte 00h");
+  EXPECT_EQ(complaint("bays:\n  - id: \0\n"s), "line 2: no text file: it has the byte 00h");
+  EXPECT_EQ(complaint("\xFF\xFE"
+                      "b\0"s),
+            "line 1: UTF-16: save it as UTF-8");
+}
+
 TEST_F(BaysFile, AFileThatIsMissingIsNamed) {
   std::filesystem::remove(file);
   EXPECT_THROW((void)bays_on(map, file), std::runtime_error);

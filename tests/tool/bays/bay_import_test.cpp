@@ -174,6 +174,11 @@ TEST(BayImport, SaysInOneLineWhatIsWrongWithATable) {
             "bays.csv: line 2: bay 'A' has one of along_m and across_m: give both or none");
 }
 
+TEST(BayImport, ATableThatIsNoTextIsToldAsThat) {
+  using namespace std::string_literals;
+  EXPECT_EQ(csv_complaint("id,x_m,y_m\nA,1,\0\n"s), "bays.csv: line 2: no text file: it has the byte 00h");
+}
+
 TEST(BayImport, ASizeIsTwoLengths) {
   EXPECT_DOUBLE_EQ(bay_size_in("2.4x1.2").along_m, 2.4);
   for (const char* wrong : {"2.4", "x1", "2x-1", "2x1x3", "axb", "nanx1"})
