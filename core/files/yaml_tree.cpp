@@ -17,8 +17,13 @@ constexpr int kBeforeTheFirst = -1;                                   // documen
 constexpr std::string_view kBelongsToNothing = "belongs to nothing";  // our own two, beside the YAML reader's
 constexpr std::string_view kOpenQuote = "quote not closed";
 
+constexpr std::string_view kBackslash = "a backslash in double quotes: write it twice, or use single quotes";
+constexpr std::string_view kSignOfAnchors = "a '*', '&' or '!' begins a value: put the value into quotes";
+constexpr std::string_view kTextOfLines = "a '|' or '>' begins a text of lines: put the value into quotes";
+constexpr std::string_view kDirective = "a '%' begins a line: take the line away, or put the value into quotes";
+
 /// The YAML reader's words, and what they mean to whoever wrote the file.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kMeanings{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 32> kMeanings{{
     {kBelongsToNothing, "this belongs to no key: look at the indentation of this line and of those above"},
     {kOpenQuote, "a quote is not closed on its line"},
     {"illegal map value", "a ':' is out of place: look at the indentation, or put the value into quotes"},
@@ -26,9 +31,31 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kMeaning
     {"end of sequence not found", "the indentation does not fit the lines above"},
     {"end of map flow not found", "a '{' is not closed"},
     {"end of sequence flow not found", "a '[' is not closed"},
-    {"unknown escape character", "a backslash in double quotes: write it twice, or use single quotes"},
+    {"unknown escape character", kBackslash},
     {"bad file", "brackets are nested too deeply"},
     {"unknown token", "a character that begins no value: put the value into quotes"},
+    {"illegal flow end", "a ']' or '}' closes no bracket that is open: look at the brackets, or use quotes"},
+    {"illegal block entry", "a '-' is out of place: begin a line of its own with it, or put the value into quotes"},
+    {"illegal map key", "a '?' or a key is out of place: look at the indentation, or put the value into quotes"},
+    {"illegal tab", "a tab in the indentation: YAML wants blanks"},
+    {"illegal EOF in scalar", "a quote is not closed"},
+    {"illegal document indicator in scalar", "a quote that is opened above is not closed"},
+    {"the referenced anchor is not defined", "a '*' begins a value, and names no anchor: put the value into quotes"},
+    {"alias not found", kSignOfAnchors},
+    {"anchor not found", kSignOfAnchors},
+    {"illegal character found while scanning", kSignOfAnchors},
+    {"end of verbatim tag not found", kSignOfAnchors},
+    {"tag handle with no suffix", kSignOfAnchors},
+    {"cannot assign", kSignOfAnchors},
+    {"aliases can't have", kSignOfAnchors},
+    {"bad character found while scanning hex", kBackslash},
+    {"invalid unicode", kBackslash},
+    {"unexpected character in block scalar", kTextOfLines},
+    {"cannot set zero indentation", kTextOfLines},
+    {"YAML ", kDirective},
+    {"bad YAML version", kDirective},
+    {"repeated ", kDirective},
+    {"TAG ", kDirective},
 }};
 
 constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";  // the parser's places do not count it

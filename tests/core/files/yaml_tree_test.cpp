@@ -57,6 +57,57 @@ TEST(YamlTree, MistakesAreToldInWordsWithALineThatIsThere) {
   EXPECT_EQ(told("a: 1\n? b\n"), "");  // valid, if odd
 }
 
+TEST(YamlTree, SignsWithAMeaningOfTheirOwnAreToldWithWhatToDo) {
+  const std::string sign = "line 1: not YAML: a '*', '&' or '!' begins a value: put the value into quotes";
+  for (const char* text : {"a: *", "a: & b", "a: !<b", "a: !!", "a: !a !b c", "a: &a &b c"})
+    EXPECT_EQ(told(text), sign) << text;
+  EXPECT_EQ(told("a: *b"), "line 1: not YAML: a '*' begins a value, and names no anchor: put the value into quotes");
+  const std::string bracket = "a ']' or '}' closes no bracket that is open: look at the brackets, or use quotes";
+  for (const char* text : {"b: 1\na: ]", "b: 1\na: [}"}) EXPECT_EQ(told(text), "line 2: not YAML: " + bracket) << text;
+  for (const char* text : {"a: - 1", "a: [- 1]"}) {
+    EXPECT_EQ(told(text),
+              "line 1: not YAML: a '-' is out of place: begin a line of its own with it, or put the value into quotes");
+  }
+  EXPECT_EQ(told("a: ? b"),
+            "line 1: not YAML: a '?' or a key is out of place: look at the indentation, or put the value into quotes");
+  EXPECT_EQ(told("a:\n  b: 1\n\tc: 2"), "line 3: not YAML: a tab in the indentation: YAML wants blanks");
+  for (const char* text : {"a: |x\n y", "a: >0\n y"})
+    EXPECT_EQ(told(text), "line 1: not YAML: a '|' or '>' begins a text of lines: put the value into quotes") << text;
+}
+
+/// Each of what the library says of a text that it cannot read.
+TEST(YamlTree, NoWordsOfTheLibraryComeThrough) {
+  for (const char* text : {"a: ]",
+                           "a: - 1",
+                           "a: ? b",
+                           "a: b: c",
+                           "a:\n  b: 1\n\tc: 2",
+                           "a: *b",
+                           "a: *",
+                           "a: & b",
+                           "a: !<b",
+                           "a: !!",
+                           "a: !a !b c",
+                           "a: \"\\q\"",
+                           "a: \"\\xZZ\"",
+                           "a: \"\\UFFFFFFFF\"",
+                           "a: |x\n y",
+                           "a: |0\n y",
+                           "a: @b",
+                           "%YAML\na: 1",
+                           "%YAML 9.0\n---\n",
+                           "%YAML x\n---\n",
+                           "%YAML 1.1\n%YAML 1.1\n---\n",
+                           "%TAG a\n---\n"}) {
+    try {
+      (void)YAML::Load(text);
+      ADD_FAILURE() << text;
+    } catch (const YAML::Exception& error) {
+      EXPECT_EQ(meaning_of(error).find(error.msg), std::string::npos) << text;
+    }
+  }
+}
+
 /// The parser below steps over no sign that begins no value: whoever asks it for the next tree asks forever.
 TEST(YamlTree, EachTextOfAFewSignsIsReadToItsEnd) {
   const std::string signs = "a:,-?[}\n ";
