@@ -9,14 +9,18 @@
 
 namespace deltamap {
 
-/// Replaces a file whole: the old one stays until the new one is complete on disk. Throws std::runtime_error that names
-/// the file.
+/// Replaces a file whole: the old one stays until the new one is complete on disk. Its mode is kept, and its owner and
+/// group where this process may give files away. Throws std::system_error that names the file.
 void replace_file(const std::filesystem::path& file, std::string_view content);
 /// The same for content that is not held in memory at once: `next_piece` answers it piece by piece, then an empty one.
 void replace_file(const std::filesystem::path& file, const std::function<std::string_view()>& next_piece);
 
+/// The same with mode, owner and group of `model`, another file or this one.
+void write_file_like(const std::filesystem::path& model, const std::filesystem::path& file,
+                     const std::function<std::string_view()>& next_piece);
+
 /// Renames a finished file to its place: its content is on disk before its name, and the name before this returns.
-/// Throws std::runtime_error that names the place.
+/// Throws std::system_error that names the place.
 void move_into_place(const std::filesystem::path& draft, const std::filesystem::path& file);
 
 }  // namespace deltamap
