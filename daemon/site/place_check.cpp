@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/site/place_check.hpp"
 
+#include <cmath>
 #include <map>
 #include <stdexcept>
 
@@ -11,7 +12,11 @@ namespace {
 
 constexpr double kLeastArea_m2 = 0.01;
 
-std::string point_text(const Point2& point) { return shortest_text(point.x()) + ", " + shortest_text(point.y()); }
+constexpr double kBorder_m = 5e-4;  // a corner counts to a millimetre
+
+std::string in_mm_text(double length_m) { return shortest_text(std::round(1e3 * length_m) / 1e3 + 0.0); }
+
+std::string point_text(const Point2& point) { return in_mm_text(point.x()) + ", " + in_mm_text(point.y()); }
 
 }  // namespace
 
@@ -43,7 +48,8 @@ void require_on_map(const std::vector<ListedPlace>& places, const std::string& f
   const Point2 high = map.origin + map.resolution_m * Point2{map.width, map.height};
   for (const ListedPlace& place : places) {
     for (const Point2& corner : place.polygon) {
-      if ((corner.array() >= map.origin.array()).all() && (corner.array() <= high.array()).all()) continue;
+      const bool is_above = (corner.array() >= map.origin.array() - kBorder_m).all();
+      if (is_above && (corner.array() <= high.array() + kBorder_m).all()) continue;
       throw std::runtime_error(name_of_place(file, what, place) + " lies off the map: its corner " +
                                point_text(corner) + "; the map reaches from " + point_text(map.origin) + " to " +
                                point_text(high) + ", in metres");

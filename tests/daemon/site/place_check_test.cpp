@@ -22,5 +22,20 @@ TEST(PlaceCheck, APlaceMayReachTheMapsBorder) {
   EXPECT_THROW(require_on_map({beyond}, "zones.yaml", "zone", map), std::runtime_error);
 }
 
+TEST(PlaceCheck, CornersAndBordersAreToldToAMillimetre) {
+  const GridGeometry map{741, 741, 0.05, {-1.025, -1.025}};  // to 36.025000000000006
+  const ListedPlace beyond{.id = "off", .polygon = {{0.1 + 0.2, 0.0}, {36.026, 0.0}, {36.026, 1.0 / 3.0}}};
+  try {
+    require_on_map({beyond}, "zones.yaml", "zone", map);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "zones.yaml: zone 'off' lies off the map: its corner 36.026, 0; the map reaches from -1.025, -1.025 "
+                 "to 36.025, 36.025, in metres");
+  }
+  const ListedPlace rounded{.id = "on", .polygon = {{-1.0250001, 0.0}, {36.0252, 0.0}, {36.0252, 1.0}}};
+  EXPECT_NO_THROW(require_on_map({rounded}, "zones.yaml", "zone", map)) << "else the line would tell one number twice";
+}
+
 }  // namespace
 }  // namespace deltamap::daemon
