@@ -35,6 +35,14 @@ bool is_end(const StoredIncident& one) {
   return !one.is_pinned && one.incident.events.front().kind == IncidentKind::kDaemonEnded;
 }
 
+/// Goes last: any of its events is a person's mark, or a pose that was lost or carried away.
+bool is_wanted(const StoredIncident& one) {
+  return std::any_of(one.incident.events.begin(), one.incident.events.end(), [](const IncidentEvent& event) {
+    return event.kind == IncidentKind::kMark || event.kind == IncidentKind::kLost ||
+           event.kind == IncidentKind::kKidnapped;
+  });
+}
+
 }  // namespace
 
 IncidentFolder::IncidentFolder(const fs::path& parent, Content content) : incident_{std::move(content.incident)} {
@@ -121,9 +129,12 @@ std::vector<std::string> within_limits(const IncidentSettings& settings, const s
     const bool too_many_ends = static_cast<std::size_t>(ends) > kMostEnds;
     const bool too_many = all.size() > settings.max_count;
     const bool too_large = static_cast<double>(bytes()) > settings.max_gigabytes * 1e9;
-    const auto oldest = std::find_if(all.begin(), all.end(), [&](const StoredIncident& one) {
+    const auto may_go = [&](const StoredIncident& one) {
       return !one.is_pinned && one.incident.name != newest && (!too_many_ends || is_end(one));
-    });
+    };
+    auto oldest =
+        std::find_if(all.begin(), all.end(), [&](const StoredIncident& one) { return may_go(one) && !is_wanted(one); });
+    if (oldest == all.end()) oldest = std::find_if(all.begin(), all.end(), may_go);
     if ((!too_many_ends && !too_many && !too_large) || oldest == all.end()) return lines;
     const std::error_code error = remove_at_once(oldest->folder);
     lines.push_back("incident " + oldest->incident.name + (error ? " cannot be removed: " + error.message() : " goes") +

@@ -64,8 +64,9 @@ void remove_drafts(const std::filesystem::path& parent);
 /// Ends of the daemon that are kept at most, so that one that cannot live drives out nothing else.
 inline constexpr std::size_t kMostEnds = 10;
 
-/// The oldest incidents that are not pinned go until the others are within the limits; `newest` stays in any case. A
-/// line for each that has gone.
+/// Incidents that are not pinned go until the others are within the limits: the oldest first of those that neither a
+/// person has marked nor a lost or carried pose has made, then the oldest of these; `newest` stays in any case. A line
+/// for each that has gone.
 [[nodiscard]] std::vector<std::string> within_limits(const IncidentSettings& settings, const std::string& newest);
 
 }  // namespace deltamap::daemon

@@ -31,9 +31,12 @@ std::uint64_t bytes_in(const fs::path& folder) {
 
 std::string place_text(const Incident& incident) {
   if (!incident.map_from_robot) return "at no known pose";
-  char text[96];
-  (void)std::snprintf(text, sizeof text, "at %.2f, %.2f, %.0f°", incident.map_from_robot->x, incident.map_from_robot->y,
-                      degrees(incident.map_from_robot->theta));
+  char text[128];
+  const int length = std::snprintf(text, sizeof text, "at %.2f, %.2f, %.0f°", incident.map_from_robot->x,
+                                   incident.map_from_robot->y, degrees(incident.map_from_robot->theta));
+  const auto rest = static_cast<std::size_t>(length);
+  if (!incident.is_sure && rest < sizeof text)
+    (void)std::snprintf(text + rest, sizeof text - rest, " in doubt (deviation %.2f m)", incident.deviation_m);
   return text;
 }
 

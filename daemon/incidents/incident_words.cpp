@@ -76,7 +76,8 @@ std::string kept_text(const Incident& incident) {
          (incident.begins_in_mid_run
               ? " It begins in mid-run: a replay begins with the pose, its deviation, the map and what had proven "
                 "stable by then, and decides by itself; votes on changes begin anew.\n"
-              : " It begins with the run: a replay by these settings repeats it bit for bit.\n");
+          : incident.is_complete() ? " It begins with the run: a replay by these settings repeats it bit for bit.\n"
+                                   : " It begins with the run.\n");
 }
 
 /// The legend of daemon/incidents/incident_picture.

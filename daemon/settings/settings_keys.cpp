@@ -226,9 +226,9 @@ void add_incidents(IncidentSettings& incidents, Keys& keys) {
   add(text_key("incidents.folder", incidents.folder,
                "folder in which incidents are kept, each in a folder of its own; empty: none"));
   add(whole_key("incidents.max_count", incidents.max_count, "", 1, 100'000,
-                "incidents at most; the oldest that is not pinned goes"));
+                "incidents at most; of those not pinned the oldest goes, marks and lost poses last"));
   add(number_key("incidents.max_gigabytes", incidents.max_gigabytes, "GB", 0.01, 10000.0,
-                 "size of all incidents at most; the oldest that is not pinned goes"));
+                 "size of all incidents at most; of those not pinned the oldest goes, marks and lost poses last"));
 }
 
 std::optional<Contradiction> contradiction_in(const DashboardSettings& dashboard) {

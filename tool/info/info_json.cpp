@@ -67,12 +67,16 @@ InfoJson json_of_run(const RecordingSurvey& survey) {
                {"began_from_earlier_run", survey.run.begin.begin().has_value()},
                {"changed", InfoJson::object()}};
   for (const auto& [key, value] : survey.settings) run["changed"][key] = value;
+  for (const daemon::Decision& command : survey.run.journal.commands()) {
+    if (is_of_begin(command)) run["begins_with"] = words_of_command(command);
+  }
   return run;
 }
 
 InfoJson json_of_commands(const RecordingSurvey& survey) {
   InfoJson commands = InfoJson::array();
   for (const daemon::Decision& command : survey.run.journal.commands()) {
+    if (is_of_begin(command)) continue;
     commands.push_back({{"what", words_of_command(command)}, {"scan", command.scan}, {"after_s", nullptr}});
     if (command.scan_time && survey.first) {
       commands.back()["after_s"] = seconds(*command.scan_time - *survey.first);

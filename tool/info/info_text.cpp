@@ -100,6 +100,7 @@ std::vector<std::string> silence_texts(const std::vector<Silence>& silences, con
 std::vector<std::string> command_texts(const RecordingSurvey& survey) {
   std::vector<std::string> texts;
   for (const daemon::Decision& command : survey.run.journal.commands()) {
+    if (is_of_begin(command)) continue;
     std::string text = words_of_command(command) + " before scan " + std::to_string(command.scan);
     if (command.scan_time && survey.first) text += text_from(", %.1f s", seconds(*command.scan_time - *survey.first));
     texts.push_back(std::move(text));
@@ -114,6 +115,9 @@ std::string run_text(const RecordingSurvey& survey) {
   const auto& begin = survey.run.begin.begin();
   if (begin && begin->start.revision > 0) text += ", revision " + std::to_string(begin->start.revision);
   if (begin) text += ", what an earlier run has kept";
+  for (const daemon::Decision& command : survey.run.journal.commands()) {
+    if (is_of_begin(command)) text += ", begins with " + words_of_command(command);
+  }
   return text;
 }
 
@@ -158,9 +162,16 @@ std::string words_of_command(const daemon::Decision& command) {
       return text_from("relocalized to %.3f, %.3f, %.1f°", pose.x, pose.y, degrees(pose.theta));
     case Kind::kMapSet:
       return daemon::reason_of(command.set->order);
+    case Kind::kSiteSet:
+      return "bays: " + std::to_string(command.site->bays.size()) +
+             ", zones: " + std::to_string(command.site->zones.size());
     default:
       return {};
   }
+}
+
+bool is_of_begin(const daemon::Decision& command) {
+  return command.kind == daemon::Decision::Kind::kSiteSet && command.scan == 0;
 }
 
 RepeatAnswer repeat_answer(const RecordingSurvey& survey) {

@@ -21,7 +21,10 @@ struct RepeatAnswer {
 /// A JSON object.
 [[nodiscard]] std::string info_json(const RecordingSurvey& survey, const RepeatAnswer& repeat);
 
-/// Of the operator, in order: "mapping paused", "relocalized to 1.000, 2.000, 90.0", "undo of 7 by an operator".
+/// Of the operator, in order: "mapping paused", "relocalized to 1.000, 2.000, 90.0", "undo of 7 by an operator",
+/// "bays: 64, zones: 4".
 [[nodiscard]] std::string words_of_command(const daemon::Decision& command);
+/// Bays and zones that the run began with: no order of an operator.
+[[nodiscard]] bool is_of_begin(const daemon::Decision& command);
 
 }  // namespace deltamap::tool

@@ -34,7 +34,7 @@ void RunEvents::observe(const daemon::ChangeNote& note) {
 
 void RunEvents::add_orders(const std::vector<daemon::Decision>& commands) {
   for (const daemon::Decision& command : commands) {
-    if (command.scan_time) add({*command.scan_time, "order", words_of_command(command)});
+    if (command.scan_time && !is_of_begin(command)) add({*command.scan_time, "order", words_of_command(command)});
   }
 }
 

@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 
 #include <csignal>
-
 #include <fstream>
 
 #include "daemon/incidents/incident_folder.hpp"
@@ -165,6 +164,36 @@ TEST_F(IncidentKeeperTest, TheOldestThatIsNotPinnedGoesFirstAndThatIsSaid) {
   }));
 }
 
+TEST_F(IncidentKeeperTest, MarksAndLostPosesGoLast) {
+  const fs::path parent = settings_.incidents.folder;
+  double time_s = 0.0;
+  const auto keep = [&](std::vector<IncidentKind> kinds) {
+    Incident incident;
+    incident.name = std::to_string(++time_s);
+    for (const IncidentKind kind : kinds) incident.events.push_back({kind, test::kIncidentStart, incident.name});
+    incident.from = test::kIncidentStart;
+    fs::create_directories(parent / incident.name);
+    write_page(parent / incident.name, incident);
+  };
+  keep({IncidentKind::kMark});
+  keep({IncidentKind::kDeviceFault, IncidentKind::kLost});
+  for (const IncidentKind kind : {IncidentKind::kRefusals, IncidentKind::kKidnapped, IncidentKind::kSafetyStop,
+                                  IncidentKind::kDeviceFault, IncidentKind::kRefusals})
+    keep({kind});
+  settings_.incidents.max_count = 4;
+  const std::string newest = kept().back().incident.name;
+  EXPECT_EQ(within_limits(settings_.incidents, newest).size(), 3u);
+  ASSERT_EQ(kept().size(), 4u);
+  EXPECT_EQ(kept()[0].incident.events.front().kind, IncidentKind::kMark);
+  EXPECT_EQ(kept()[1].incident.events.back().kind, IncidentKind::kLost);
+  EXPECT_EQ(kept()[2].incident.events.front().kind, IncidentKind::kKidnapped);
+  EXPECT_EQ(kept()[3].incident.name, newest);
+  settings_.incidents.max_count = 2;
+  (void)within_limits(settings_.incidents, newest);
+  ASSERT_EQ(kept().size(), 2u);
+  EXPECT_EQ(kept()[0].incident.events.front().kind, IncidentKind::kKidnapped) << "the oldest of them went";
+}
+
 TEST_F(IncidentKeeperTest, AFolderThatCannotBeIsToldAndAMarkIsRefusedUntilItCan) {
   std::ofstream(folder_.path() / "incidents") << "a file";
   start();
@@ -230,6 +259,21 @@ TEST_F(IncidentKeeperTest, TheRingGoesWithTheRun) {
   EXPECT_LE(segments, 16u);
   daemon_->listener()->close(world_->now());
   EXPECT_FALSE(fs::exists(ring));
+}
+
+TEST(IncidentText, PromisesNoRepeatOfWhatIsNotWholeAndNoPlaceOfAPoseInDoubt) {
+  Incident incident{.name = "20261130T030012Z-lost", .events = {{IncidentKind::kLost, Timestamp{}, "lost"}}};
+  incident.begins_in_mid_run = false;
+  incident.to = Timestamp{};
+  incident.map_from_robot = Pose2{1.0, 2.0, 0.0};
+  incident.deviation_m = 10.0;
+  const std::string promise = "repeats it bit for bit";
+  EXPECT_NE(words_of(incident, false).find(promise), std::string::npos);
+  EXPECT_NE(line_of({.incident = incident}).find("at 1.00, 2.00, 0° in doubt (deviation 10.00 m)"), std::string::npos);
+  incident.lacks = "some seconds before its end";
+  incident.is_sure = true;
+  EXPECT_EQ(words_of(incident, false).find(promise), std::string::npos);
+  EXPECT_EQ(line_of({.incident = incident}).find("in doubt"), std::string::npos);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "daemon/records/journal.hpp"
@@ -119,6 +120,21 @@ daemon::Settings recorded_settings(const std::vector<std::string>& overrides) {
 
 void begin_run(WrittenRecording& recording, const daemon::Settings& settings) {
   for (const std::string& note : daemon::first_notes(settings, 0x1234, {})) recording.note(0.0, note);
+}
+
+TEST(Info, TellsBaysAndZonesThatARunBeganWithApartFromThoseThatWereTakenLater) {
+  WrittenRecording recording;
+  begin_run(recording, recorded_settings({}));
+  drive(recording, 0.0, 3.0);
+  const auto site = std::make_shared<const daemon::Site>();
+  for (const std::string& note : daemon::notes_of(daemon::SetSite{0, Timestamp{}, site})) recording.note(0.0, note);
+  for (const std::string& note : daemon::notes_of(daemon::SetSite{12, WrittenRecording::at(2.4), site}))
+    recording.note(2.4, note);
+  const auto info = info_of(recording.closed());
+  EXPECT_EQ(info["run"]["begins_with"], "bays: 0, zones: 0");
+  ASSERT_EQ(info["operator"].size(), 1u);
+  EXPECT_EQ(info["operator"][0]["what"], "bays: 0, zones: 0");
+  EXPECT_NEAR(info["operator"][0]["after_s"].get<double>(), 2.4, 1e-9);
 }
 
 TEST(Info, TellsTheSettingsOfTheRunAndWhetherTheseAreTheyAndTheOrdersOfTheOperator) {

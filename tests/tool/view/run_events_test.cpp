@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 
 namespace deltamap::tool {
@@ -47,6 +48,15 @@ TEST(RunEvents, AreThoseThatAPersonJumpsToInTheOrderOfTime) {
       {{"kind", "incident"}, {"time", kBeganS + 5.5}, {"words", "mark: marked by an operator: pallet fell"}},
       {{"kind", "order"}, {"time", kBeganS + 6.0}, {"words", "mapping paused"}}};
   EXPECT_EQ(json::parse(events.json()), expected);
+}
+
+TEST(RunEvents, BaysAndZonesThatARunBeganWithAreNoOrder) {
+  RunEvents events;
+  const auto site = std::make_shared<const daemon::Site>();
+  events.add_orders({{.kind = Decision::Kind::kSiteSet, .scan = 0, .scan_time = Timestamp{}, .site = site},
+                     {.kind = Decision::Kind::kSiteSet, .scan = 9, .scan_time = after_s(3.0), .site = site}});
+  EXPECT_EQ(json::parse(events.json()),
+            (json{{{"kind", "order"}, {"time", kBeganS + 3.0}, {"words", "bays: 0, zones: 0"}}}));
 }
 
 TEST(RunEvents, OfNothingAreNone) { EXPECT_EQ(RunEvents{}.json(), "[]"); }
