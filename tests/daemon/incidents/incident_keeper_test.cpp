@@ -262,18 +262,21 @@ TEST_F(IncidentKeeperTest, TheRingGoesWithTheRun) {
 }
 
 TEST(IncidentText, PromisesNoRepeatOfWhatIsNotWholeAndNoPlaceOfAPoseInDoubt) {
-  Incident incident{.name = "20261130T030012Z-lost", .events = {{IncidentKind::kLost, Timestamp{}, "lost"}}};
+  StoredIncident stored;
+  Incident& incident = stored.incident;
+  incident.name = "20261130T030012Z-lost";
+  incident.events = {{IncidentKind::kLost, Timestamp{}, "lost"}};
   incident.begins_in_mid_run = false;
   incident.to = Timestamp{};
   incident.map_from_robot = Pose2{1.0, 2.0, 0.0};
   incident.deviation_m = 10.0;
   const std::string promise = "repeats it bit for bit";
   EXPECT_NE(words_of(incident, false).find(promise), std::string::npos);
-  EXPECT_NE(line_of({.incident = incident}).find("at 1.00, 2.00, 0° in doubt (deviation 10.00 m)"), std::string::npos);
+  EXPECT_NE(line_of(stored).find("at 1.00, 2.00, 0° in doubt (deviation 10.00 m)"), std::string::npos);
   incident.lacks = "some seconds before its end";
   incident.is_sure = true;
   EXPECT_EQ(words_of(incident, false).find(promise), std::string::npos);
-  EXPECT_EQ(line_of({.incident = incident}).find("in doubt"), std::string::npos);
+  EXPECT_EQ(line_of(stored).find("in doubt"), std::string::npos);
 }
 
 }  // namespace
