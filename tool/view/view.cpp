@@ -195,7 +195,8 @@ void add_view(CLI::App& app) {
   auto* command = app.add_subcommand("view", "a run's folder, a recording or a map in a browser, to be scrubbed");
   auto options = std::make_shared<ViewOptions>();
   command
-      ->add_option("SOURCE", options->target, "folder of a run (--out) or an incident, recording (pcapng), or map (YAML)")
+      ->add_option("SOURCE", options->target,
+                   "folder of a run (--out) or an incident, recording (pcapng), or map (YAML)")
       ->required();
   command->add_option("--port", options->port, "of the page, on loopback; 0 (as delivered): any that is free");
   command->add_option("--map", options->job.map, "of a recording: M_0, map_server YAML");
