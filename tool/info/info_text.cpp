@@ -39,7 +39,9 @@ std::string text_of(const ToldValues& told, const std::string& before, const std
   if (told.changes.empty()) return {};
   std::string text;
   for (const auto& [after_s, value] : told.changes) {
-    text += text.empty() ? ", " + before + value + behind : ", " + value + text_from(" from %.1f s", after_s);
+    const bool is_first = text.empty();
+    text.append(", ").append(is_first ? before : "").append(value);
+    text.append(is_first ? behind : text_from(" from %.1f s", after_s));
   }
   return text;
 }
@@ -93,6 +95,7 @@ std::string laser_text(const RecordingSurvey& survey) {
 
 std::vector<std::string> silence_texts(const std::vector<Silence>& silences, const char* format) {
   std::vector<std::string> texts;
+  texts.reserve(silences.size());
   for (const Silence& one : silences) texts.push_back(text_from(format, one.length_s, one.after_s));
   return texts;
 }
@@ -198,7 +201,7 @@ std::string info_text(const RecordingSurvey& survey, const RepeatAnswer& repeat)
   for (const std::string& line : survey.run.faults.lines()) lines.add("lost", line);
   lines.add("operator", command_texts(survey));
   lines.add("run", run_text(survey));
-  for (const auto& [key, value] : survey.settings) lines.add("run", key + ": " + value);
+  for (const auto& [key, value] : survey.settings) lines.add("run", std::string(key).append(": ").append(value));
   lines.add("replay", (repeat.can ? "bit for bit: " : "not bit for bit: ") + repeat.why);
   std::string head = survey.file.string();
   head += text_from(": %.1f s", survey.length_s) + (survey.first ? " from " + utc_text(*survey.first) : "");
