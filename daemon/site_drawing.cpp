@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/site_drawing.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <filesystem>
+#include <initializer_list>
 #include <stdexcept>
 #include <system_error>
 
 #include "core/counted.hpp"
+#include "core/files/file_lock.hpp"
+#include "core/files/keep_earlier.hpp"
 #include "core/files/replace_file.hpp"
 #include "core/files/text_of_file.hpp"
-#include "core/utc_text.hpp"
 #include "daemon/site/bays_file.hpp"
 #include "daemon/site/zones_file.hpp"
 #include "drivers/port/port_clock.hpp"
@@ -49,35 +53,29 @@ std::string text_in_force(const std::string& file, const Site& site, PlaceKind k
   return text;
 }
 
-/// "zones.20261130T110000Z.yaml", which is not there yet.
-fs::path place_of_earlier_list(const fs::path& file, Timestamp now) {
-  for (int number = 1;; ++number) {
-    fs::path place = file;
-    place.replace_extension("." + utc_name(now) + (number == 1 ? "" : "-" + std::to_string(number)) +
-                            file.extension().string());
-    std::error_code error;
-    if (!fs::exists(place, error)) return place;
-  }
+/// What a person can do where a file cannot be written.
+std::string way_out(const std::error_code& why, PlaceKind kind) {
+  const auto is_one_of = [&](std::initializer_list<std::errc> errors) {
+    return std::any_of(errors.begin(), errors.end(), [&](std::errc one) { return why == one; });
+  };
+  if (is_one_of({std::errc::no_space_on_device, std::errc::file_too_large}) || why.value() == EDQUOT)
+    return "make room on that disk, and draw again: all is as it was";
+  if (is_one_of({std::errc::io_error})) return "look at that disk (`dmesg`): all is as it was";
+  return "name a place for '" + list_of(kind) + ".file' where the daemon may write, as its folder of state";
 }
 
 /// Where the earlier text is kept; empty: a rewrite loses nothing. Throws std::runtime_error.
 std::string replaced(const std::string& file, const std::string& before, const Site& site, const Site& wanted,
                      PlaceKind kind) {
-  std::error_code error;
-  const fs::path behind = fs::canonical(file, error);  // a link stays one
-  const fs::path place = error ? fs::path(file) : behind;
-  std::string kept;
+  const std::string text = file_text(wanted, kind);
   try {
-    if (before != file_text(site, kind)) {
-      kept = place_of_earlier_list(place, drivers::port::port_clock_now()).string();
-      replace_file(kept, before);
-    }
-    replace_file(place, file_text(wanted, kind));
-  } catch (const std::runtime_error& why) {
-    throw std::runtime_error(std::string(why.what()) + ": name a place for '" + list_of(kind) +
-                             ".file' where the daemon may write, as its folder of state");
+    if (before != file_text(site, kind))
+      return replace_and_keep(file, before, text, drivers::port::port_clock_now()).string();
+    replace_file(file_behind(file), text);
+  } catch (const std::system_error& why) {
+    throw std::runtime_error(std::string(why.what()) + ": " + way_out(why.code(), kind));
   }
-  return kept;
+  return "";
 }
 
 std::string words_of_drawn(const Site& wanted, PlaceKind kind, const std::string& file, const std::string& kept) {

@@ -9,6 +9,7 @@
 
 #include "core/counted.hpp"
 #include "core/files/grid_file.hpp"
+#include "core/files/keep_earlier.hpp"
 #include "core/files/replace_file.hpp"
 #include "core/files/scratch_folder.hpp"
 #include "core/files/text_of_file.hpp"
@@ -16,6 +17,7 @@
 #include "daemon/outputs/bay_note.hpp"
 #include "daemon/replay/replay_run.hpp"
 #include "daemon/site/bays_file.hpp"
+#include "drivers/port/port_clock.hpp"
 #include "tool/bays/bay_import.hpp"
 #include "tool/ctl/bays_table.hpp"
 #include "tool/output_file.hpp"
@@ -98,15 +100,26 @@ void tell_bays(BaysOptions& options) {
   }
 }
 
+/// Where what stood there is kept; empty: nothing is lost.
+std::string written_bays(const std::string& file, const std::string& yaml) {
+  std::error_code error;
+  const std::string before = std::filesystem::is_regular_file(file, error) ? text_of_file(file) : "";
+  if (!before.empty() && before != yaml)
+    return replace_and_keep(file, before, yaml, drivers::port::port_clock_now()).string();
+  replace_file(file, yaml);
+  return "";
+}
+
 void import_bays(const ImportOptions& options) {
   require_output_beside(options.out, options.source);
   const auto size = options.size.empty() ? std::nullopt : std::optional{bay_size_in(options.size)};
   const ImportedBays imported = imported_bays(options.source, size, options.layouts);
   daemon::require_sound_bays(imported.bays, options.source);
   if (!options.map.empty()) daemon::require_bays_on(grid_file_geometry(options.map), imported.bays, options.source);
-  replace_file(options.out, daemon::bays_as_yaml(imported.bays));
+  const std::string kept = written_bays(options.out, daemon::bays_as_yaml(imported.bays));
   for (const std::string& line : imported.left_out) std::cerr << "deltamap: warning: " << line << '\n';
-  std::cout << options.out << ": " << counted(imported.bays.size(), "bay") << '\n';
+  std::cout << options.out << ": " << counted(imported.bays.size(), "bay")
+            << (kept.empty() ? "" : "; what stood there is kept in " + kept) << '\n';
 }
 
 void add_bays_import(CLI::App& bays) {

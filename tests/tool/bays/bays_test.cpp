@@ -9,6 +9,7 @@
 #include "core/files/grid_file.hpp"
 #include "daemon/site/bays_file.hpp"
 #include "tests/support/files/temporary_folder.hpp"
+#include "tests/support/files/text_file.hpp"
 #include "tests/support/files/tool_run.hpp"
 #include "tests/support/scans/scripted_drive.hpp"
 #include "tool/ctl/bays_table.hpp"
@@ -95,6 +96,21 @@ TEST_F(BaysCommand, ImportsATableAndRefusesWhatCannotBe) {
   const ToolRun off = run_deltamap({"bays", "import", table, "--out", out, "--size", "9x1", "--map", map});
   EXPECT_EQ(off.exit_code, 1) << "and what was there stays";
   EXPECT_EQ(daemon::read_bays(out).size(), 2u);
+}
+
+TEST_F(BaysCommand, AnImportKeepsTheListThatItReplaces) {
+  const std::string table = folder.path() / "site.csv";
+  std::ofstream{table} << "id,x_m,y_m\nA,3,3\n";
+  const std::string before = test::content_of(bays);
+  const std::vector<std::string> import{"bays", "import", table, "--out", bays, "--size", "2.4x2.4"};
+  const ToolRun run = run_deltamap(import);
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const std::string words = bays + ": 1 bay; what stood there is kept in ";
+  ASSERT_TRUE(run.output.starts_with(words)) << run.output;
+  const std::string kept = run.output.substr(words.size(), run.output.size() - words.size() - 1);
+  EXPECT_EQ(test::content_of(kept), before);
+  EXPECT_EQ(daemon::read_bays(bays).size(), 1u);
+  EXPECT_EQ(run_deltamap(import).output, bays + ": 1 bay\n") << "the same again loses nothing";
 }
 
 TEST(BaysTable, TellsAgesAndCounts) {
