@@ -28,7 +28,7 @@ std::filesystem::path place_of_earlier(const std::filesystem::path& file, Timest
 std::filesystem::path replace_and_keep(const std::filesystem::path& file, std::string_view before,
                                        std::string_view text, Timestamp now) {
   const std::filesystem::path place = file_behind(file);
-  const std::filesystem::path kept = place_of_earlier(place, now);
+  std::filesystem::path kept = place_of_earlier(place, now);
   write_file_like(place, kept, [&] { return std::exchange(before, {}); });
   try {
     replace_file(place, text);
