@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/site_drawing.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <filesystem>
-#include <initializer_list>
 #include <stdexcept>
 #include <system_error>
 
@@ -55,12 +53,10 @@ std::string text_in_force(const std::string& file, const Site& site, PlaceKind k
 
 /// What a person can do where a file cannot be written.
 std::string way_out(const std::error_code& why, PlaceKind kind) {
-  const auto is_one_of = [&](std::initializer_list<std::errc> errors) {
-    return std::any_of(errors.begin(), errors.end(), [&](std::errc one) { return why == one; });
-  };
-  if (is_one_of({std::errc::no_space_on_device, std::errc::file_too_large}) || why.value() == EDQUOT)
-    return "make room on that disk, and draw again: all is as it was";
-  if (is_one_of({std::errc::io_error})) return "look at that disk (`dmesg`): all is as it was";
+  const bool is_full =
+      why == std::errc::no_space_on_device || why == std::errc::file_too_large || why.value() == EDQUOT;
+  if (is_full) return "make room on that disk, and draw again: all is as it was";
+  if (why == std::errc::io_error) return "look at that disk (`dmesg`): all is as it was";
   return "name a place for '" + list_of(kind) + ".file' where the daemon may write, as its folder of state";
 }
 

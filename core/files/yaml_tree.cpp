@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/files/text_of_file.hpp"
+
 namespace deltamap {
 namespace {
 
@@ -58,14 +60,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 32> kMeaning
     {"TAG ", kDirective},
 }};
 
-constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";  // the parser's places do not count it
-
 /// Notes where a document begins and whether there is anything in it. Refuses quotes that are open at the end of their
 /// line.
 class EventsOfDocument : public YAML::EventHandler {
  public:
   explicit EventsOfDocument(std::string_view text) : text_{text} {
-    if (text_.starts_with(kUtf8Mark)) text_.remove_prefix(kUtf8Mark.size());
+    if (text_.starts_with(kUtf8Mark)) text_.remove_prefix(kUtf8Mark.size());  // the parser's places do not count it
   }
 
   void OnDocumentStart(const YAML::Mark& mark) override {

@@ -11,6 +11,7 @@
 #include "core/files/text_of_file.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/utc_text.hpp"
+#include "daemon/records/run_listener.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -31,13 +32,13 @@ std::uint64_t bytes_in(const fs::path& folder) {
 
 std::string place_text(const Incident& incident) {
   if (!incident.map_from_robot) return "at no known pose";
-  char text[128];
-  const int length = std::snprintf(text, sizeof text, "at %.2f, %.2f, %.0f°", incident.map_from_robot->x,
-                                   incident.map_from_robot->y, degrees(incident.map_from_robot->theta));
-  const auto rest = static_cast<std::size_t>(length);
-  if (!incident.is_sure && rest < sizeof text)
-    (void)std::snprintf(text + rest, sizeof text - rest, " in doubt (deviation %.2f m)", incident.deviation_m);
-  return text;
+  char at[96];
+  (void)std::snprintf(at, sizeof at, "at %.2f, %.2f, %.0f°", incident.map_from_robot->x, incident.map_from_robot->y,
+                      degrees(incident.map_from_robot->theta));
+  if (incident.is_sure) return at;
+  char doubt[64];
+  (void)std::snprintf(doubt, sizeof doubt, " in doubt (deviation %.2f m)", incident.deviation_m);
+  return std::string(at) + doubt;
 }
 
 bool has_picture(const StoredIncident& stored) {
@@ -107,8 +108,7 @@ std::string incidents_json(const fs::path& folder) {
 }
 
 std::string incidents_reply(const IncidentSettings& settings) {
-  if (settings.folder.empty())
-    return line({{"ok", false}, {"error", "'incidents.folder' is not set: nothing is kept (set it, and restart)"}});
+  if (settings.folder.empty()) return line({{"ok", false}, {"error", kNothingIsKept}});
   const std::vector<StoredIncident> all = incidents_in(settings.folder);
   std::string text = counted(all.size(), "incident") + " in " + settings.folder;
   for (const StoredIncident& stored : all) text += "\n" + line_of(stored);

@@ -143,10 +143,8 @@ void Recorder::obey(const RecordOrder& order) {
 }
 
 void Recorder::keep(const MarkOrder& mark) {
-  const control::CommandOutcome outcome =
-      listener_ ? listener_->hear(mark, drivers::port::port_clock_now())
-                : control::CommandOutcome{mark.ticket, false,
-                                          "'incidents.folder' is not set: nothing is kept (set it, and restart)"};
+  const control::CommandOutcome outcome = listener_ ? listener_->hear(mark, drivers::port::port_clock_now())
+                                                    : control::CommandOutcome{mark.ticket, false, kNothingIsKept};
   if (hooks_.saved) hooks_.saved(outcome);
 }
 

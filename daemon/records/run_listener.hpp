@@ -13,6 +13,9 @@
 
 namespace deltamap::daemon {
 
+/// What an order for incidents is told where none are kept.
+inline constexpr const char* kNothingIsKept = "'incidents.folder' is not set: nothing is kept (set it, and restart)";
+
 /// `ctl mark`: a person wants this moment kept.
 struct MarkOrder {
   std::string words;  ///< one line; may be empty

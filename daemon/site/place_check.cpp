@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/site/place_check.hpp"
 
-#include <cmath>
 #include <map>
 #include <stdexcept>
-
-#include "core/files/shortest_text.hpp"
 
 namespace deltamap::daemon {
 namespace {
@@ -14,9 +11,7 @@ constexpr double kLeastArea_m2 = 0.01;
 
 constexpr double kBorder_m = 5e-4;  // a corner counts to a millimetre
 
-std::string in_mm_text(double length_m) { return shortest_text(std::round(1e3 * length_m) / 1e3 + 0.0); }
-
-std::string point_text(const Point2& point) { return in_mm_text(point.x()) + ", " + in_mm_text(point.y()); }
+std::string point_text(const Point2& point) { return in_mm(point.x()) + ", " + in_mm(point.y()); }
 
 }  // namespace
 

@@ -102,9 +102,9 @@ std::string in_quotes(std::string_view text) {
   return written + "\"";
 }
 
-std::string in_mm(double length_m) { return yaml_number(std::round(1e3 * length_m) / 1e3 + 0.0); }
-
 }  // namespace
+
+std::string in_mm(double length_m) { return yaml_number(std::round(1e3 * length_m) / 1e3 + 0.0); }
 
 void require_text(std::string_view text, const std::string& file) {
   if (const auto binary = binary_byte(text))

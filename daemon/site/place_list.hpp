@@ -33,6 +33,9 @@ struct ListedPlace {
 /// Throws std::runtime_error "FILE: line N: no text file: it has the byte 00h", or "… a character that is not UTF-8 …".
 void require_text(std::string_view text, const std::string& file);
 
+/// To a millimetre, as corners are written and told; no "-0".
+[[nodiscard]] std::string in_mm(double length_m);
+
 /// Without corners that repeat the one before: GeoJSON, WKT and Shapely close an outline by its first, and CAD programs
 /// double some. May leave fewer than three.
 [[nodiscard]] Polygon without_repeated_corners(Polygon polygon);

@@ -13,14 +13,14 @@
 
 #include "core/counted.hpp"
 #include "core/files/foreign_file.hpp"
+#include "core/files/text_of_file.hpp"
 #include "core/geometry/angle.hpp"
 
 namespace deltamap::drivers::carmen {
 namespace {
 
-constexpr std::size_t kMaxLineBytes = 1u << 20;              // a scan of 361 values takes 3 kB
-constexpr std::size_t kMostToldLines = 3;                    // of the broken ones; the others are counted
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8: some editors begin a text with it
+constexpr std::size_t kMaxLineBytes = 1u << 20;  // a scan of 361 values takes 3 kB
+constexpr std::size_t kMostToldLines = 3;        // of the broken ones; the others are counted
 constexpr std::array kTimeWords{"time stamp", "host", "logger time"};
 
 [[noreturn]] void refuse_file(const std::filesystem::path& file, const std::string& why) {
@@ -60,7 +60,7 @@ bool CarmenLog::read_line() {
     if (!is_ended_ && is_text_) text_ += static_cast<char>(next);
   }
   if (read_bytes_ == before) return false;
-  if (++line_ == 1 && text_.starts_with(kByteOrderMark)) text_.erase(0, kByteOrderMark.size());
+  if (++line_ == 1 && text_.starts_with(kUtf8Mark)) text_.erase(0, kUtf8Mark.size());
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/files/text_of_file.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/trimmed.hpp"
 #include "daemon/site/place_list.hpp"
@@ -132,9 +133,8 @@ Bay bay_of(const TableRow& row, const std::optional<BaySize>& size) {
 }  // namespace
 
 ImportedBays bays_of_csv(const std::string& text, const std::string& name, const std::optional<BaySize>& size) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   daemon::require_text(text, name);
-  const std::string table = text.substr(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+  const std::string table = text.substr(text.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0);
   if (table.empty()) throw std::runtime_error(name + ": is empty");
   const char separator = table.substr(0, table.find('\n')).find(';') == std::string::npos ? ',' : ';';
   const std::vector<TableLine> lines = lines_in(table, separator);

@@ -67,9 +67,7 @@ InfoJson json_of_run(const RecordingSurvey& survey) {
                {"began_from_earlier_run", survey.run.begin.begin().has_value()},
                {"changed", InfoJson::object()}};
   for (const auto& [key, value] : survey.settings) run["changed"][key] = value;
-  for (const daemon::Decision& command : survey.run.journal.commands()) {
-    if (is_of_begin(command)) run["begins_with"] = words_of_command(command);
-  }
+  if (const std::string begin = words_of_begin(survey); !begin.empty()) run["begins_with"] = begin;
   return run;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tool/info/info_text.hpp"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -118,9 +119,7 @@ std::string run_text(const RecordingSurvey& survey) {
   const auto& begin = survey.run.begin.begin();
   if (begin && begin->start.revision > 0) text += ", revision " + std::to_string(begin->start.revision);
   if (begin) text += ", what an earlier run has kept";
-  for (const daemon::Decision& command : survey.run.journal.commands()) {
-    if (is_of_begin(command)) text += ", begins with " + words_of_command(command);
-  }
+  if (const std::string words = words_of_begin(survey); !words.empty()) text += ", begins with " + words;
   return text;
 }
 
@@ -175,6 +174,12 @@ std::string words_of_command(const daemon::Decision& command) {
 
 bool is_of_begin(const daemon::Decision& command) {
   return command.kind == daemon::Decision::Kind::kSiteSet && command.scan == 0;
+}
+
+std::string words_of_begin(const RecordingSurvey& survey) {
+  const auto& commands = survey.run.journal.commands();
+  const auto begin = std::find_if(commands.begin(), commands.end(), is_of_begin);
+  return begin == commands.end() ? "" : words_of_command(*begin);
 }
 
 RepeatAnswer repeat_answer(const RecordingSurvey& survey) {

@@ -26,5 +26,7 @@ struct RepeatAnswer {
 [[nodiscard]] std::string words_of_command(const daemon::Decision& command);
 /// Bays and zones that the run began with: no order of an operator.
 [[nodiscard]] bool is_of_begin(const daemon::Decision& command);
+/// Theirs; empty where it began with none.
+[[nodiscard]] std::string words_of_begin(const RecordingSurvey& survey);
 
 }  // namespace deltamap::tool

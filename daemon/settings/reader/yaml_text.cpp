@@ -7,13 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "core/files/text_of_file.hpp"
 #include "core/files/yaml_tree.hpp"
 #include "daemon/settings/reader/text_character.hpp"
 
 namespace deltamap::daemon {
 namespace {
-
-constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
